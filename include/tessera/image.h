@@ -1,0 +1,106 @@
+// Pictures and label planes. An Image owns one plane of `width` x `height` pixels, row by row from
+// the top left, without padding. Formats: rgba8 (display colour, sRGB-encoded, straight alpha),
+// rgba32f (linear Rec. 709, straight alpha unless a producer says otherwise), f32, u32.
+// Reading and writing throw tessera::Error; nothing here is global, so any thread may call.
+#pragma once
+
+#include <tessera/export.h>
+#include <tessera/types.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace tessera {
+
+enum class PixelFormat { kRgba8, kRgba16, kRgba32f, kF32, kU32 };
+
+// Bytes of one pixel: 4, 8, 16, 4, 4.
+TESSERA_API std::size_t bytes_per_pixel(PixelFormat format);
+
+// The largest width or height, in pixels.
+inline constexpr int kMaxImageSide = 16384;
+
+class TESSERA_API Image {
+  public:
+    Image() = default;
+    // Zero-filled. Throws kLimit for sides outside 1 .. kMaxImageSide.
+    Image(int width, int height, PixelFormat format);
+
+    int width() const { return width_; }
+    int height() const { return height_; }
+    PixelFormat format() const { return format_; }
+    bool empty() const { return data_.empty(); }
+    std::size_t row_bytes() const { return static_cast<std::size_t>(width_) * bytes_per_pixel(format_); }
+
+    std::span<std::byte> bytes() { return data_; }
+    std::span<const std::byte> bytes() const { return data_; }
+    // The pixels as T: uint8_t or uint16_t channels, float channels, or uint32_t values.
+    template <class T>
+    T* data() {
+        return reinterpret_cast<T*>(data_.data());
+    }
+    template <class T>
+    const T* data() const {
+        return reinterpret_cast<const T*>(data_.data());
+    }
+
+  private:
+    int width_ = 0, height_ = 0;
+    PixelFormat format_ = PixelFormat::kRgba8;
+    std::vector<std::byte> data_;
+};
+
+// --- codecs ---------------------------------------------------------------------------------
+
+struct ImageInfo {
+    int width = 0, height = 0, channels = 0, bits = 8;
+    std::string codec;  // "png" or "jpeg"
+};
+
+// Reads the header only. The codec is told by content. Throws kInput when it is none we know.
+TESSERA_API ImageInfo read_image_info(std::span<const std::byte> file);
+// Decodes PNG (8 and 16 bit, every colour type) or JPEG (8 bit grey, YCbCr, CMYK) into kRgba8, or
+// into kRgba16 for 16-bit PNG when `keep_16_bit`. Values are as stored: no colour space is applied.
+// Throws kInput for a damaged file and kLimit when width * height exceeds `max_pixels`, before the
+// pixels are allocated.
+TESSERA_API Image decode_image(std::span<const std::byte> file, std::uint64_t max_pixels = 1u << 28,
+                               bool keep_16_bit = false);
+// Reads and decodes a file; the error names it.
+TESSERA_API Image read_image(const std::string& path, std::uint64_t max_pixels = 1u << 28, bool keep_16_bit = false);
+
+struct PngOptions {
+    int level = 1;                  // 0 (stored) .. 12 (smallest)
+    bool drop_opaque_alpha = true;  // write RGB when every alpha is full
+};
+// kRgba8 becomes 8-bit, kRgba16 16-bit RGB(A); kF32 and kU32 are refused (kUsage).
+TESSERA_API std::vector<std::byte> encode_png(const Image& image, const PngOptions& options = {});
+// kRgba8 only; alpha is dropped; quality 1 .. 100, 4:4:4 from 90 on, 4:2:0 below.
+TESSERA_API std::vector<std::byte> encode_jpeg(const Image& image, int quality = 92);
+// Chooses the codec by the extension (.png, .jpg, .jpeg). Writes a temporary file beside `path` and
+// renames it, so that a failure leaves nothing behind. Throws kOutput.
+TESSERA_API void write_image(const std::string& path, const Image& image);
+
+// N-plane true colour (FB1): every kRgba8 channel reduced to its number of bits (1 .. 8 each, such as
+// 3-3-2 or 5-6-5, which gives 2^N colours) and widened again, rounding to the nearest level.
+TESSERA_API Image quantize_true_color(const Image& image, int red_bits, int green_bits, int blue_bits);
+
+// --- comparison -----------------------------------------------------------------------------
+
+struct ImageDifference {
+    std::uint64_t differing_pixels = 0;
+    double max_error = 0, mean_error = 0;  // over all channels, in units of 1/255 for kRgba8
+    double psnr = 0;                       // dB; infinity for equal images
+};
+// Both images must have the same size and format (kUsage otherwise). A pixel differs when a channel
+// differs by more than `tolerance` (in 1/255 for kRgba8, 1/65535 for kRgba16).
+TESSERA_API ImageDifference compare_images(const Image& a, const Image& b, double tolerance = 0);
+// A picture of where two kRgba8 images differ: the first one greyed, differences in red.
+TESSERA_API Image difference_picture(const Image& a, const Image& b, double tolerance = 0);
+// FNV-1a (64 bit) over the pixel bytes: the `color_hash` of the statistics.
+TESSERA_API std::uint64_t hash_pixels(const Image& image);
+
+}  // namespace tessera

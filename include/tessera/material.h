@@ -1,0 +1,91 @@
+// Materials and textures of a scene: the material interface that every engine sees. Colours are
+// linear Rec. 709; texture coordinates have their origin at the top left of the picture (glTF).
+// Plain data; references are indices into the vectors of Scene (kNone: absent).
+#pragma once
+
+#include <tessera/image.h>
+#include <tessera/types.h>
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <string>
+
+namespace tessera {
+
+inline constexpr int kNone = -1;
+
+// --- textures -------------------------------------------------------------------------------
+
+enum class Wrap : std::uint8_t { kRepeat, kMirror, kClamp };
+enum class Filter : std::uint8_t { kNearest, kLinear };
+// How a texture is filtered when it shrinks: kNone takes level 0 only.
+enum class MipFilter : std::uint8_t { kNone, kNearest, kLinear };
+
+struct Sampler {
+    std::string name;
+    Filter mag_filter = Filter::kLinear, min_filter = Filter::kLinear;
+    MipFilter mip_filter = MipFilter::kLinear;
+    Wrap wrap_s = Wrap::kRepeat, wrap_t = Wrap::kRepeat;
+};
+
+// Decoded pixels (kRgba8 or kRgba16), shared between copies of a scene. The colour space is that of
+// the texture slot that uses them: sRGB for base colour and emission, linear for the others.
+struct Picture {
+    std::string name, uri;
+    std::shared_ptr<const Image> pixels;
+    std::string extras;  // raw JSON, "" when absent; the same for every `extras` below
+};
+
+struct Texture {
+    std::string name;
+    int picture = kNone;
+    int sampler = kNone;  // kNone: repeat, trilinear
+    std::string extras;
+};
+
+// --- materials ------------------------------------------------------------------------------
+
+// A texture input of the material interface. To add one: a slot here, its reader in load/, its use
+// in shading/material.h. Every engine then sees it.
+enum class TextureSlot : std::uint8_t { kBaseColor, kMetallicRoughness, kNormal, kOcclusion, kEmissive, kCount };
+inline constexpr std::size_t kTextureSlots = static_cast<std::size_t>(TextureSlot::kCount);
+
+struct TextureRef {
+    int texture = kNone;
+    int uv_set = 0;
+    // KHR_texture_transform: uv' = translate(offset) * rotate(rotation) * scale(scale) * uv.
+    Vec2 offset{0, 0}, scale{1, 1};
+    float rotation = 0;
+    friend bool operator==(const TextureRef&, const TextureRef&) = default;
+};
+
+enum class ShadingModel : std::uint8_t { kMetallicRoughness, kUnlit, kLambert, kPhong, kBlinnPhong };
+enum class AlphaMode : std::uint8_t { kOpaque, kMask, kBlend };
+
+struct Material {
+    std::string name;
+    ShadingModel model = ShadingModel::kMetallicRoughness;
+
+    // Metallic-roughness and unlit. The alpha of base_color is the material's alpha in every model.
+    Vec4 base_color{1, 1, 1, 1};
+    float metallic = 1, roughness = 1;
+    Vec3 emissive{0, 0, 0};  // ke of the Phong models
+    float emissive_strength = 1;
+    float normal_scale = 1, occlusion_strength = 1;
+
+    // Lambert, Phong and Blinn-Phong (linear colours); the base-colour texture modulates ka and kd.
+    Vec3 ambient{0, 0, 0}, diffuse{0.8f, 0.8f, 0.8f}, specular{0, 0, 0};  // ka, kd, ks
+    float shininess = 32;                                                 // ns
+
+    std::array<TextureRef, kTextureSlots> textures;
+    TextureRef& texture(TextureSlot s) { return textures[static_cast<std::size_t>(s)]; }
+    const TextureRef& texture(TextureSlot s) const { return textures[static_cast<std::size_t>(s)]; }
+
+    AlphaMode alpha_mode = AlphaMode::kOpaque;
+    float alpha_cutoff = 0.5f;
+    bool double_sided = false;
+    std::string extras;
+};
+
+}  // namespace tessera

@@ -1,0 +1,105 @@
+// Rendering: a scene, a view and options in, planes of pixels and statistics out. render() keeps no
+// global state; any number may run at once. It throws tessera::Error: kUsage for options that make
+// no sense, kLimit and kCancelled while rendering.
+#pragma once
+
+#include <tessera/export.h>
+#include <tessera/image.h>
+#include <tessera/scene.h>
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace tessera {
+
+enum class Engine : std::uint8_t {
+    kReferenceRaster,  // z-buffer, scalar, single-threaded: the oracle
+    kReferenceTrace,   // ray caster with hard shadows, scalar, single-threaded
+};
+TESSERA_API const char* name(Engine engine);
+
+// Instruction sets of the kernels. kAuto: TESSERA_ISA of the environment if set, else the best that
+// the processor has.
+enum class Isa : std::uint8_t { kAuto, kScalar, kSse4, kAvx2, kAvx512 };
+TESSERA_API const char* name(Isa isa);
+// kUsage when the name is unknown or the processor lacks the instruction set.
+TESSERA_API Isa parse_isa(const std::string& name);
+// What kAuto stands for here; throws kUsage when TESSERA_ISA names none or one that is missing.
+TESSERA_API Isa resolve_isa(Isa isa);
+
+enum class ToneMap : std::uint8_t { kNone, kNeutral, kAces };
+
+// Where the camera stands. Exactly one way is used: `camera` (an index into Scene::cameras, at the
+// first node that carries it), else `eye`/`target`, else the scene's first camera, else the visible
+// bounds framed in a three-quarter view.
+struct View {
+    std::optional<int> camera;
+    std::optional<Vec3> eye, target;
+    Vec3 up{0, 1, 0};
+    std::optional<float> yfov;  // radians; default 45 degrees
+    bool frame_bounds = false;  // ignore the scene's cameras
+};
+
+enum class Lighting : std::uint8_t {
+    kAuto,    // the scene's lights, or the studio when it has none
+    kScene,   // only the scene's lights
+    kStudio,  // three directional lights and ambient light, fixed to the camera
+};
+
+struct RenderOptions {
+    int width = 1024, height = 768;  // pixels, 1 .. kMaxImageSide
+    Engine engine = Engine::kReferenceRaster;
+    View view;
+    Lighting lighting = Lighting::kAuto;
+    // Uniform ambient radiance; unset: the studio's own, or a twentieth of the exposed white for a
+    // scene's lights.
+    std::optional<float> ambient;
+    bool shadows = true;               // hard shadows where the engine has them
+    int samples = 4;                   // per pixel, 1 .. 256, at fixed positions of 1/256 pixel
+    std::optional<float> exposure_ev;  // radiance * 2^ev; unset: automatic
+    ToneMap tone_map = ToneMap::kNeutral;
+    std::optional<Vec4> background = Vec4{1, 1, 1, 1};  // display RGB (sRGB-encoded) and alpha; unset: transparent
+    int threads = 0;                                    // 0: what the process may use
+    Isa isa = Isa::kAuto;
+
+    // Planes wanted besides the colour; labels are taken at the pixel centre.
+    bool want_linear = false, want_depth = false, want_primitive = false;
+
+    std::uint64_t max_bytes = std::uint64_t{4} << 30;  // memory that rendering may take
+    std::function<void(double)> progress;              // 0 .. 1, from any thread, not reentrant
+    std::function<bool()> cancel;                      // true: stop; render() throws kCancelled
+};
+
+struct RenderStats {
+    Engine engine = Engine::kReferenceRaster;
+    Isa isa = Isa::kScalar;
+    int threads = 1;
+    std::uint64_t triangles = 0;  // submitted
+    std::uint64_t culled_frustum = 0, culled_backface = 0, culled_degenerate = 0, clipped = 0;
+    std::uint64_t pixels_covered = 0;                       // with at least one sample hit
+    std::uint64_t fragments_passed = 0;                     // samples that passed the depth test (raster), hits (trace)
+    std::uint64_t color_hash = 0;                           // hash_pixels() of the colour plane
+    double exposure = 1;                                    // factor on radiance
+    std::vector<std::pair<std::string, double>> phases_ms;  // wall time by phase, in order
+    double frame_ms = 0, cpu_ms = 0;
+};
+
+struct RenderResult {
+    Image color;      // kRgba8, display-ready, straight alpha
+    Image linear;     // kRgba32f, scene radiance before exposure, premultiplied alpha
+    Image depth;      // kF32, reversed: 1 near, 0 far
+    Image primitive;  // kU32, 1 + number of the triangle in submission order; 0: none
+    RenderStats stats;
+    std::vector<std::string> warnings;
+};
+
+TESSERA_API RenderResult render(const Scene& scene, const RenderOptions& options = {});
+
+// World-space box of everything that would be drawn.
+TESSERA_API Bounds3 visible_bounds(const Scene& scene);
+
+}  // namespace tessera

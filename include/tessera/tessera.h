@@ -1,0 +1,11 @@
+// Everything of Tessera's public API, and its version.
+#pragma once
+
+#include <tessera/error.h>
+#include <tessera/image.h>
+#include <tessera/load.h>
+#include <tessera/render.h>
+#include <tessera/scene.h>
+#include <tessera/transform.h>
+#include <tessera/types.h>
+#include <tessera/version.h>
