@@ -1,0 +1,290 @@
+#!/usr/bin/env python3
+"""Makes the scenes of this folder: `scenes/generate.py [FOLDER]` (default: the folder it lies in).
+
+Each function below is one scene. Light is in lux (directional) and candela (point, spot); the
+intensities are those of a bright room, so a camera with automatic exposure shows them well.
+"""
+
+import math
+import pathlib
+import sys
+
+from gltf_builder import Document, about, box, cylinder, moved, quad, sphere, write_png
+
+PHONG = "TESSERA_materials_phong"
+UNLIT = "KHR_materials_unlit"
+STRENGTH = "KHR_materials_emissive_strength"
+
+
+def srgb(code):
+    """Linear colour of "#rrggbb"."""
+    values = [int(code[i:i + 2], 16) / 255 for i in (1, 3, 5)]
+    return [v / 12.92 if v <= 0.04045 else ((v + 0.055) / 1.055) ** 2.4 for v in values]
+
+
+def glow(color, strength):
+    return {"emissiveFactor": list(color), "extensions": {STRENGTH: {"emissiveStrength": strength}}}
+
+
+# --- textures -----------------------------------------------------------------------------------
+
+
+def textures(folder):
+    def checker(x, y):
+        if x % 64 in (0, 63) or y % 64 in (0, 63):
+            return (150, 146, 140)  # the joint between the tiles
+        return (226, 221, 212) if (x // 64 + y // 64) % 2 == 0 else (64, 78, 92)
+
+    def dimples(x, y):
+        # Round dimples in a staggered grid, as a tangent-space normal map with +Y up.
+        cell = 32
+        v = y / cell
+        u = x / cell + (0.5 if int(v) % 2 else 0.0)
+        dx, dy = (u % 1) - 0.5, 0.5 - (v % 1)
+        r = math.hypot(dx, dy)
+        if r >= 0.42 or r == 0:
+            return (128, 128, 255)
+        slope = -0.75 * math.sin(math.pi * r / 0.42)
+        n = [-slope * dx / r, -slope * dy / r, 1.0]
+        length = math.sqrt(sum(c * c for c in n))
+        return tuple(round(127.5 + 127.5 * c / length) for c in n)
+
+    def leaf(x, y):
+        u, v = (x + 0.5) / 128 - 0.5, 0.5 - (y + 0.5) / 128
+        t = v + 0.42  # 0 at the stem's end, up the leaf
+        width = 0.34 * math.sin(math.pi * min(max(t / 0.88, 0), 1)) ** 0.8 * (1 - 0.35 * t)
+        teeth = 0.012 * math.cos(t * 75)
+        inside = 0.04 < t < 0.86 and abs(u) < width + teeth
+        stem = v < -0.30 and abs(u) < 0.014
+        rib = abs(u) < 0.012 or abs((t - abs(u) * 0.9) % 0.13 - 0.065) < 0.007
+        shade = 0.82 + 0.18 * t - 0.25 * abs(u)
+        color = (168, 196, 104) if rib else (92, 150, 66)
+        return tuple(round(c * shade) for c in color) + (255 if inside or stem else 0,)
+
+    def lattice(x, y):
+        hole = ((x % 32) - 15.5) ** 2 + ((y % 32) - 15.5) ** 2 < 110
+        return (255, 255, 255, 0 if hole else 255)
+
+    write_png(folder / "checker.png", 128, 128, checker)
+    write_png(folder / "dimples-normal.png", 128, 128, dimples)
+    write_png(folder / "leaf.png", 128, 128, leaf)
+    write_png(folder / "lattice.png", 64, 64, lattice)
+
+
+# --- scenes ---------------------------------------------------------------------------------------
+
+
+def cornell_box():
+    doc = Document("Cornell box")
+    white = doc.material("white", (0.73, 0.71, 0.68), roughness=0.95)
+    red = doc.material("red", srgb("#b3261e"), roughness=0.95)
+    green = doc.material("green", srgb("#3f8f3a"), roughness=0.95)
+    lamp = doc.material("lamp", (0, 0, 0), **glow((1, 0.88, 0.68), 40.0))
+    room = doc.node("room")
+    for name, center, right, up, material in (
+            ("floor", [0, 0, 0], [1, 0, 0], [0, 0, -1], white), ("ceiling", [0, 2, 0], [1, 0, 0], [0, 0, 1], white),
+            ("back wall", [0, 1, -1], [1, 0, 0], [0, 1, 0], white), ("left wall", [-1, 1, 0], [0, 0, -1], [0, 1, 0], red),
+            ("right wall", [1, 1, 0], [0, 0, 1], [0, 1, 0], green)):
+        doc.node(name, room, mesh=doc.mesh(name, quad(center, right, up), material))
+    doc.node("lamp", room, mesh=doc.mesh("lamp", quad([0, 1.998, 0], [0.26, 0, 0], [0, 0, 0.2]), lamp))
+    block = box([0.6, 0.6, 0.6])
+    doc.node("short block", translation=[0.34, 0.3, 0.34], rotation=about([0, 1, 0], -17),
+             mesh=doc.mesh("block", block, white))
+    doc.node("tall block", translation=[-0.34, 0.6, -0.32], rotation=about([0, 1, 0], 18), scale=[1, 2, 1],
+             mesh=len(doc.parts["meshes"]) - 1)
+    doc.light("lamp light", "point", (1, 0.88, 0.68), 30.0, [0, 1.82, 0])
+    doc.camera("front", [0, 1, 3.85], [0, 1, 0], 39.5)
+    doc.camera("corner", [0.75, 1.7, 2.2], [-0.25, 0.5, -0.3], 48)
+    return doc
+
+
+def spheres():
+    doc = Document("Spheres on a checker plane")
+    tiles = doc.texture("checker", "checker.png")
+    floor = doc.material("tiles", (1, 1, 1), roughness=0.55, texture=tiles)
+    doc.node("floor", mesh=doc.mesh("floor", quad([0, 0, 0], [40, 0, 0], [0, 0, -40], (40, 40), 8), floor))
+    ball = sphere(1.0, 64, 32)
+    for name, color, metallic, roughness, radius, x, z in (
+            ("gold", (1.0, 0.71, 0.29), 1.0, 0.3, 1.0, 0.0, 0.0), ("copper", (0.95, 0.57, 0.46), 1.0, 0.38, 0.7, -1.95, 0.55),
+            ("steel", (0.62, 0.64, 0.66), 1.0, 0.26, 0.8, 1.95, 0.2), ("red plastic", srgb("#c8342b"), 0.0, 0.22, 0.5, -0.85, 1.55),
+            ("teal plastic", srgb("#1f8a8c"), 0.0, 0.3, 0.42, 0.75, 1.6), ("porcelain", srgb("#f2ede4"), 0.0, 0.15, 0.85, -2.6, -1.55),
+            ("blue rubber", srgb("#33558f"), 0.0, 0.7, 0.95, 2.75, -1.7), ("olive clay", srgb("#8a8a3c"), 0.0, 0.95, 0.34, 2.05, 1.75),
+            ("plum plastic", srgb("#7c3a6b"), 0.0, 0.25, 0.36, -2.35, 1.9)):
+        material = doc.material(name, color, metallic, roughness)
+        doc.node(name, translation=[x, radius, z], scale=[radius] * 3, mesh=doc.mesh(name, ball, material, "ball"))
+    doc.light("sun", "directional", (1, 0.95, 0.86), 8.0, [4, 6, 4.5], [0, 0, 0])
+    doc.light("sky", "directional", (0.72, 0.84, 1), 2.6, [-5, 3.5, 3], [0, 0, 0])
+    doc.light("rim", "directional", (1, 0.98, 0.95), 3.0, [-1.5, 3, -6], [0, 0, 0])
+    doc.camera("main", [0.6, 2.35, 7.4], [0, 0.62, 0], 32)
+    doc.camera("low", [-3.6, 0.75, 5.2], [0.1, 0.8, 0], 38)
+    return doc
+
+
+def lights():
+    doc = Document("Kinds of light")
+    plaster = doc.material("plaster", (0.78, 0.77, 0.75), roughness=0.9)
+    stone = doc.material("stone", srgb("#d9d2c5"), roughness=0.6)
+    bulb = doc.material("bulb", (0, 0, 0), **glow((1, 0.62, 0.28), 60.0))
+    doc.node("floor", mesh=doc.mesh("floor", quad([0, 0, 2], [8, 0, 0], [0, 0, -5]), plaster))
+    doc.node("wall", mesh=doc.mesh("wall", quad([0, 3, -2], [8, 0, 0], [0, 3.5, 0]), plaster))
+    plinth = doc.mesh("plinth", cylinder(0.55, 0.55, 0.5, 0.04), stone)
+    figures = (("sphere", moved(sphere(0.48), [0, 0.98, 0])), ("cone", moved(cylinder(0.46, 0.0, 1.15), [0, 0.5, 0])),
+               ("cube", moved(box([0.78, 0.78, 0.78], 0.05), [0, 0.89, 0])))
+    for (name, shape), x, turn in zip(figures, (-2.6, 0, 2.6), (0, 0, 28)):
+        place = doc.node(name + " place", translation=[x, 0, 0.2], rotation=about([0, 1, 0], turn))
+        doc.node(name + " plinth", place, mesh=plinth)
+        doc.node(name, place, mesh=doc.mesh(name, shape, stone))
+    for name, color, x, height in (("red spot", (1, 0.22, 0.14), -3.1, 3.9), ("green spot", (0.3, 1, 0.36), 0.0, 4.1),
+                                   ("blue spot", (0.2, 0.42, 1), 3.1, 3.9)):
+        doc.light(name, "spot", color, 260.0, [x, height, 2.6], [x * 0.9, 1.5, -2], cone=(11, 19))
+    doc.light("moon", "directional", (0.66, 0.76, 1), 2.2, [-3, 5, 6], [0, 0, 0])
+    lamp = doc.node("lamp", translation=[1.3, 0.32, 1.75])
+    doc.node("bulb", lamp, mesh=doc.mesh("bulb", sphere(0.13, 32, 16), bulb))
+    doc.light("lamp light", "point", (1, 0.62, 0.28), 6.0, [0, 0, 0], parent=lamp)
+    doc.camera("main", [0, 2.15, 8.6], [0, 1.45, -0.6], 37)
+    doc.camera("side", [-6.2, 2.6, 5.6], [0.2, 1.2, -0.4], 40)
+    return doc
+
+
+def materials():
+    doc = Document("Materials side by side")
+    dimples = doc.texture("dimples", "dimples-normal.png")
+    lattice = doc.texture("lattice", "lattice.png")
+    ball = sphere(0.46, 56, 28)
+    backdrop = doc.material("backdrop", srgb("#8d939b"), roughness=1.0)
+    doc.node("backdrop", mesh=doc.mesh("backdrop", quad([0, 0, -1.1], [9, 0, 0], [0, 6, 0]), backdrop))
+
+    def place(name, column, row, material):
+        doc.node(name, translation=[column - 3.0, 1.65 - 1.1 * row, 0], mesh=doc.mesh(name, ball, material, "ball"))
+
+    for row, (metallic, color) in enumerate(((0.0, srgb("#c5482f")), (0.5, srgb("#d29a57")), (1.0, (1.0, 0.76, 0.36)))):
+        for column in range(7):
+            roughness = 0.1 + 0.15 * column
+            name = f"metallic {metallic:g} roughness {roughness:.2f}"
+            place(name, column, row, doc.material(name, color, metallic, roughness))
+
+    blue = srgb("#2f6fb4")
+
+    def phong(model, **more):
+        values = {"model": model, "ambient": blue, "diffuse": blue, "specular": [0.45, 0.45, 0.45], "shininess": 40.0}
+        return {"extensions": {PHONG: {**values, **more}}}
+
+    samples = (
+        ("lambert", doc.material("lambert", blue, roughness=1.0, **phong("lambert", specular=[0, 0, 0]))),
+        ("phong", doc.material("phong", blue, roughness=0.4, **phong("phong"))),
+        ("blinn-phong", doc.material("blinn-phong", blue, roughness=0.4, **phong("blinn-phong", shininess=160.0))),
+        ("unlit", doc.material("unlit", blue, extensions={UNLIT: {}})),
+        ("normal map", doc.material("normal map", srgb("#e8e4da"), roughness=0.35,
+                                    normalTexture={"index": dimples, "scale": 1.0,
+                                                   "extensions": {"KHR_texture_transform": {"scale": [4, 2]}}})),
+        ("alpha mask", doc.material("alpha mask", srgb("#3c9a5f"), roughness=0.5, texture=lattice, alphaMode="MASK",
+                                    alphaCutoff=0.5, doubleSided=True)),
+        ("blend", doc.material("blend", srgb("#7a4fb0"), roughness=0.2, alpha=0.45, alphaMode="BLEND")))
+    doc.extensions.add("KHR_texture_transform")
+    mask = doc.parts["materials"][samples[5][1]]["pbrMetallicRoughness"]["baseColorTexture"]
+    mask["extensions"] = {"KHR_texture_transform": {"scale": [5, 3]}}
+    for column, (name, material) in enumerate(samples):
+        place(name, column, 3, material)
+    doc.light("key", "directional", (1, 0.97, 0.92), 7.0, [-3.5, 5, 6], [0, 0, 0])
+    doc.light("fill", "directional", (0.82, 0.9, 1), 2.4, [5, 1.5, 5], [0, 0, 0])
+    doc.light("top", "point", (1, 1, 1), 45.0, [1.5, 3.6, 2.6])
+    doc.camera("front", [0, 0, 11.5], [0, 0, 0], 25)
+    doc.camera("oblique", [-6, 2.6, 8], [-0.3, -0.2, 0], 30)
+    return doc
+
+
+def hierarchy():
+    doc = Document("Robot arm: a hierarchy of nodes")
+    orange = doc.material("orange paint", srgb("#e8711a"), roughness=0.38)
+    dark = doc.material("dark iron", srgb("#3a3f47"), metallic=0.4, roughness=0.45)
+    steel = doc.material("steel", (0.66, 0.67, 0.69), metallic=1.0, roughness=0.34)
+    floor = doc.material("floor", srgb("#b9c1c9"), roughness=0.9)
+    cargo = doc.material("cargo", srgb("#2a7f92"), roughness=0.5)
+    doc.node("floor", mesh=doc.mesh("floor", quad([0, 0, 0], [14, 0, 0], [0, 0, -14]), floor))
+    bolt = doc.mesh("bolt", cylinder(0.055, 0.055, 0.07, 0.012, 24), steel)
+    drum = doc.mesh("drum", moved(cylinder(0.26, 0.26, 0.62, 0.04), [0, -0.31, 0]), dark)
+    cap = doc.mesh("cap", moved(cylinder(0.17, 0.17, 0.7, 0.03), [0, -0.35, 0]), steel)
+
+    def joint(name, parent, degrees, **place):
+        """A hinge about X: its drum, and the node that turns whatever hangs on it."""
+        axle = doc.node(name, parent, rotation=about([1, 0, 0], degrees), **place)
+        doc.node(name + " drum", axle, rotation=about([0, 0, 1], 90), mesh=drum)
+        doc.node(name + " cap", axle, rotation=about([0, 0, 1], 90), mesh=cap)
+        return axle
+
+    base = doc.node("base", mesh=doc.mesh("base", cylinder(0.95, 0.85, 0.28, 0.05), dark))
+    for i in range(8):  # one mesh, eight instances
+        ring = doc.node(f"bolt arm {i}", base, rotation=about([0, 1, 0], 45.0 * i + 22.5))
+        doc.node(f"bolt {i}", ring, translation=[0, 0.28, 0.7], mesh=bolt)
+    turntable = doc.node("turntable", base, translation=[0, 0.28, 0], rotation=about([0, 1, 0], 52),
+                         mesh=doc.mesh("turntable", cylinder(0.6, 0.5, 0.4, 0.05), orange))
+    shoulder = joint("shoulder", turntable, 24, translation=[0, 0.62, 0])
+    beam = doc.mesh("beam", moved(box([0.36, 1.5, 0.42], 0.08), [0, 0.8, 0]), orange)
+    doc.node("upper arm", shoulder, mesh=beam)
+    elbow = joint("elbow", shoulder, 68, translation=[0, 1.65, 0], scale=[0.82] * 3)
+    doc.node("forearm", elbow, mesh=beam)
+    wrist = joint("wrist", elbow, 62, translation=[0, 1.65, 0], scale=[0.66] * 3)
+    doc.node("hand", wrist, translation=[0, 0.42, 0], mesh=doc.mesh("hand", box([1.0, 0.2, 0.5], 0.06), dark))
+    finger = doc.mesh("finger", moved(box([0.14, 0.7, 0.36], 0.05), [0.42, 0.42, 0]), steel)
+    tip = doc.mesh("fingertip", moved(box([0.3, 0.12, 0.36], 0.04), [0.36, 0.76, 0]), orange)
+    for name, scale in (("right finger", [1, 1, 1]), ("left finger", [-1, 1, 1])):  # the left one is a mirror image
+        side = doc.node(name, wrist, translation=[0, 0.48, 0], scale=scale, mesh=finger)
+        doc.node(name + " tip", side, mesh=tip)
+    crate = doc.mesh("crate", box([0.5, 0.5, 0.5], 0.04), cargo)
+    for i, (x, y, z, turn) in enumerate(((2.05, 0.25, -0.75, 12), (2.2, 0.25, 0.0, -9), (2.12, 0.75, -0.4, 33))):
+        doc.node(f"crate {i}", translation=[x, y, z], rotation=about([0, 1, 0], turn), mesh=crate)
+    doc.light("sun", "directional", (1, 0.95, 0.87), 8.0, [-3, 7, 5], [0, 0, 0])
+    doc.light("sky", "directional", (0.74, 0.85, 1), 2.4, [5, 3, 4], [0, 0, 0])
+    doc.camera("main", [3.1, 2.7, 6.6], [0.75, 1.2, 0.2], 33)
+    doc.camera("above", [1.0, 8.2, 2.2], [0.7, 0, 0.1], 34)
+    return doc
+
+
+def transparency():
+    doc = Document("Transparency")
+    leaf_picture = doc.texture("leaf", "leaf.png", wrap=33071)
+    leaf = doc.material("leaf", (1, 1, 1), roughness=0.6, texture=leaf_picture, alphaMode="MASK", alphaCutoff=0.5,
+                        doubleSided=True)
+    table = doc.material("table", srgb("#c9b79c"), roughness=0.8)
+    pot = doc.material("terracotta", srgb("#b5623c"), roughness=0.75)
+    twig = doc.material("twig", srgb("#5b6b35"), roughness=0.8)
+    doc.node("table", mesh=doc.mesh("table", quad([0, 0, 0], [12, 0, 0], [0, 0, -12]), table))
+    place = doc.node("plant", translation=[-1.45, 0, 0])
+    rim = moved(cylinder(0.5, 0.52, 0.16, 0.03), [0, 0.62, 0])
+    doc.node("pot", place, mesh=doc.mesh("pot", cylinder(0.34, 0.46, 0.66, 0.03), pot))
+    doc.node("rim", place, mesh=doc.mesh("rim", rim, pot))
+    doc.node("twig", place, translation=[0, 0.7, 0], mesh=doc.mesh("twig", cylinder(0.035, 0.015, 1.25), twig))
+    blade = doc.mesh("leaf", quad([0, 0.42, 0], [0.46, 0, 0], [0, 0.46, 0]), leaf)
+    for i in range(13):  # leaves along the twig, by the golden angle
+        t = i / 12
+        turn = doc.node(f"leaf turn {i}", place, translation=[0, 0.86 + 1.05 * t, 0], rotation=about([0, 1, 0], 137.508 * i))
+        doc.node(f"leaf {i}", turn, rotation=about([1, 0, 0], 78 - 52 * t), scale=[1.0 - 0.35 * t] * 3, mesh=blade)
+    panes = doc.node("panes", translation=[1.35, 1.0, 0.1])
+    pane = quad([0, 0, 0], [0.95, 0, 0], [0, 0.95, 0])
+    for name, color, turn in (("rose pane", srgb("#d6336c"), 20), ("amber pane", srgb("#f2a20c"), 80),
+                              ("blue pane", srgb("#1c7ed6"), 140)):  # three panes through one axis
+        glass = doc.material(name, color, roughness=0.15, alpha=0.5, alphaMode="BLEND", doubleSided=True)
+        doc.node(name, panes, rotation=about([0, 1, 0], turn), mesh=doc.mesh(name, pane, glass, "pane"))
+    marble = doc.material("marble ball", srgb("#efeae2"), roughness=0.3)
+    doc.node("ball", panes, translation=[0, -0.62, 0], scale=[0.38] * 3, mesh=doc.mesh("ball", sphere(), marble))
+    doc.light("window", "directional", (1, 0.96, 0.88), 7.0, [3, 6, 4], [0, 0, 0])
+    doc.light("room", "directional", (0.8, 0.88, 1), 2.6, [-5, 3, 4], [0, 0, 0])
+    doc.camera("main", [0, 2.15, 6.8], [0, 1.0, 0], 33)
+    doc.camera("panes", [1.9, 2.9, 3.6], [1.35, 0.85, 0.1], 36)
+    return doc
+
+
+SCENES = {"cornell-box": cornell_box, "spheres": spheres, "lights": lights, "materials": materials,
+          "hierarchy": hierarchy, "transparency": transparency}
+
+
+def main():
+    folder = pathlib.Path(sys.argv[1]) if len(sys.argv) > 1 else pathlib.Path(__file__).resolve().parent
+    folder.mkdir(parents=True, exist_ok=True)
+    textures(folder)
+    for stem, make in SCENES.items():
+        make().write(folder, stem)
+
+
+if __name__ == "__main__":
+    main()
