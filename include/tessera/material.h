@@ -13,14 +13,15 @@
 
 namespace tessera {
 
-inline constexpr int kNone = -1;
-
 // --- textures -------------------------------------------------------------------------------
 
 enum class Wrap : std::uint8_t { kRepeat, kMirror, kClamp };
 enum class Filter : std::uint8_t { kNearest, kLinear };
 // How a texture is filtered when it shrinks: kNone takes level 0 only.
 enum class MipFilter : std::uint8_t { kNone, kNearest, kLinear };
+
+// No reference. (Declared after MipFilter, whose enumerator of this name would shadow it.)
+inline constexpr int kNone = -1;
 
 struct Sampler {
     std::string name;

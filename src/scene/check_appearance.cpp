@@ -1,0 +1,76 @@
+// Cameras, lights, materials, textures and pictures.
+#include "scene/check.h"
+
+namespace tessera {
+namespace {
+
+constexpr float kPi = 3.14159265f;
+
+void check_camera(const Camera& camera, const Place& place) {
+    const float values[] = {
+        camera.yfov, camera.xmag, camera.ymag, camera.znear, camera.zfar.value_or(1), camera.aspect.value_or(1)};
+    place.finite(values, std::size(values));
+    if (camera.type == Camera::Type::kPerspective) {
+        if (!(camera.yfov > 0 && camera.yfov < kPi)) place.child("yfov").fail("must be above 0 and below pi");
+        if (!(camera.znear > 0)) place.child("znear").fail("must be above 0");
+        if (camera.aspect && !(*camera.aspect > 0)) place.child("aspect").fail("must be above 0");
+    } else {
+        if (camera.xmag == 0) place.child("xmag").fail("must not be 0");
+        if (camera.ymag == 0) place.child("ymag").fail("must not be 0");
+        if (!(camera.znear >= 0)) place.child("znear").fail("must not be negative");
+        if (!camera.zfar) place.child("zfar").fail("an orthographic camera needs a far plane");
+    }
+    if (camera.zfar && !(*camera.zfar > camera.znear)) place.child("zfar").fail("must be beyond znear");
+}
+
+void check_light(const Light& light, const Place& place) {
+    const float values[] = {light.color.x,    light.color.y,           light.color.z,   light.intensity,
+                            light.inner_cone, light.range.value_or(1), light.outer_cone};
+    place.finite(values, std::size(values));
+    if (light.intensity < 0) place.child("intensity").fail("must not be negative");
+    if (light.range && !(*light.range > 0)) place.child("range").fail("must be above 0");
+    if (light.type == Light::Type::kSpot &&
+        !(light.inner_cone >= 0 && light.inner_cone <= light.outer_cone && light.outer_cone <= kPi / 2 + 1e-5f))
+        place.child("outer_cone").fail("cones must satisfy 0 <= inner <= outer <= pi/2");
+}
+
+void check_material(const Scene& scene, const Material& m, const Place& place) {
+    const float values[] = {m.base_color.x, m.base_color.y, m.base_color.z, m.base_color.w, m.metallic,
+                            m.roughness,    m.emissive.x,   m.emissive.y,   m.emissive.z,   m.emissive_strength,
+                            m.normal_scale, m.ambient.x,    m.ambient.y,    m.ambient.z,    m.occlusion_strength,
+                            m.diffuse.x,    m.diffuse.y,    m.diffuse.z,    m.specular.x,   m.specular.y,
+                            m.specular.z,   m.shininess,    m.alpha_cutoff};
+    place.finite(values, std::size(values));
+    for (std::size_t s = 0; s < kTextureSlots; ++s) {
+        const TextureRef& ref = m.textures[s];
+        const Place slot = place.child("textures", s);
+        slot.reference(ref.texture, scene.textures.size(), "texture");
+        if (ref.uv_set < 0) slot.child("uv_set").fail("must not be negative");
+        const float transform[] = {ref.offset.x, ref.offset.y, ref.scale.x, ref.scale.y, ref.rotation};
+        slot.finite(transform, std::size(transform));
+    }
+}
+
+}  // namespace
+
+void check_appearance(const Scene& scene) {
+    for (std::size_t i = 0; i < scene.cameras.size(); ++i) check_camera(scene.cameras[i], Place{nullptr, "cameras", i});
+    for (std::size_t i = 0; i < scene.lights.size(); ++i) check_light(scene.lights[i], Place{nullptr, "lights", i});
+    for (std::size_t i = 0; i < scene.materials.size(); ++i)
+        check_material(scene, scene.materials[i], Place{nullptr, "materials", i});
+    for (std::size_t i = 0; i < scene.textures.size(); ++i) {
+        const Place place{nullptr, "textures", i};
+        place.reference(scene.textures[i].picture, scene.pictures.size(), "picture");
+        place.reference(scene.textures[i].sampler, scene.samplers.size(), "sampler");
+    }
+    for (std::size_t i = 0; i < scene.pictures.size(); ++i) {
+        const Image* pixels = scene.pictures[i].pixels.get();
+        if (!pixels) continue;
+        const Place place = Place{nullptr, "pictures", i};
+        if (pixels->empty()) place.child("pixels").fail("the picture has no pixels");
+        if (pixels->format() != PixelFormat::kRgba8 && pixels->format() != PixelFormat::kRgba16)
+            place.child("pixels").fail("a picture holds RGBA of 8 or 16 bits");
+    }
+}
+
+}  // namespace tessera
