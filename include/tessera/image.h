@@ -54,6 +54,9 @@ class TESSERA_API Image {
     std::vector<std::byte> data_;
 };
 
+// From linear light to the display: Khronos PBR Neutral, or a curve like ACES.
+enum class ToneMap : std::uint8_t { kNone, kNeutral, kAces };
+
 // --- codecs ---------------------------------------------------------------------------------
 
 struct ImageInfo {

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <tessera/image.h>
+#include <tessera/shading_model.h>
 #include <tessera/types.h>
 
 #include <array>
@@ -14,14 +15,6 @@
 namespace tessera {
 
 // --- textures -------------------------------------------------------------------------------
-
-enum class Wrap : std::uint8_t { kRepeat, kMirror, kClamp };
-enum class Filter : std::uint8_t { kNearest, kLinear };
-// How a texture is filtered when it shrinks: kNone takes level 0 only.
-enum class MipFilter : std::uint8_t { kNone, kNearest, kLinear };
-
-// No reference. (Declared after MipFilter, whose enumerator of this name would shadow it.)
-inline constexpr int kNone = -1;
 
 struct Sampler {
     std::string name;
@@ -47,11 +40,6 @@ struct Texture {
 
 // --- materials ------------------------------------------------------------------------------
 
-// A texture input of the material interface. To add one: a slot here, its reader in load/, its use
-// in shading/material.h. Every engine then sees it.
-enum class TextureSlot : std::uint8_t { kBaseColor, kMetallicRoughness, kNormal, kOcclusion, kEmissive, kCount };
-inline constexpr std::size_t kTextureSlots = static_cast<std::size_t>(TextureSlot::kCount);
-
 struct TextureRef {
     int texture = kNone;
     int uv_set = 0;
@@ -60,9 +48,6 @@ struct TextureRef {
     float rotation = 0;
     friend bool operator==(const TextureRef&, const TextureRef&) = default;
 };
-
-enum class ShadingModel : std::uint8_t { kMetallicRoughness, kUnlit, kLambert, kPhong, kBlinnPhong };
-enum class AlphaMode : std::uint8_t { kOpaque, kMask, kBlend };
 
 struct Material {
     std::string name;

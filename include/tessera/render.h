@@ -31,8 +31,6 @@ TESSERA_API Isa parse_isa(const std::string& name);
 // What kAuto stands for here; throws kUsage when TESSERA_ISA names none or one that is missing.
 TESSERA_API Isa resolve_isa(Isa isa);
 
-enum class ToneMap : std::uint8_t { kNone, kNeutral, kAces };
-
 // Where the camera stands. Exactly one way is used: `camera` (an index into Scene::cameras, at the
 // first node that carries it), else `eye`/`target`, else the scene's first camera, else the visible
 // bounds framed in a three-quarter view.

@@ -81,13 +81,15 @@ struct Camera {
 };
 
 struct Light {
-    enum class Type : std::uint8_t { kDirectional, kPoint, kSpot };
+    using Type = LightType;
     std::string name;
-    Type type = Type::kPoint;
+    LightType type = LightType::kPoint;
     Vec3 color{1, 1, 1};
     float intensity = 1;                             // lux for directional, candela for the others
     std::optional<float> range;                      // metres; unset: unlimited
     float inner_cone = 0, outer_cone = 0.78539816f;  // spot, radians from the axis (-Z of the node)
+    LightFalloff falloff = LightFalloff::kInverseSquare;
+    SpotProfile spot_profile = SpotProfile::kCones;
     std::string extras;
 };
 

@@ -1,0 +1,34 @@
+// The choices that a material and its textures are made of, as plain enumerations: the public scene
+// and the shading kernels read the same ones.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+namespace tessera {
+
+enum class ShadingModel : std::uint8_t { kMetallicRoughness, kUnlit, kLambert, kPhong, kBlinnPhong };
+enum class AlphaMode : std::uint8_t { kOpaque, kMask, kBlend };
+
+enum class LightType : std::uint8_t { kDirectional, kPoint, kSpot };
+// kInverseSquare: glTF, candela over metres squared. kConstant: the light of the textbook formulas,
+// whose `intensity` arrives undiminished as their I_l.
+enum class LightFalloff : std::uint8_t { kInverseSquare, kConstant };
+// kCones: glTF, full inside the inner cone, squared fall to zero at the outer one. kAxis: fades from
+// the axis, linearly in the cosine, to zero at the outer cone.
+enum class SpotProfile : std::uint8_t { kCones, kAxis };
+
+// A texture input of the material interface. To add one: a slot here, its reader in load/, its use
+// in shading/material.h. Every engine then sees it.
+enum class TextureSlot : std::uint8_t { kBaseColor, kMetallicRoughness, kNormal, kOcclusion, kEmissive, kCount };
+inline constexpr std::size_t kTextureSlots = static_cast<std::size_t>(TextureSlot::kCount);
+
+enum class Wrap : std::uint8_t { kRepeat, kMirror, kClamp };
+enum class Filter : std::uint8_t { kNearest, kLinear };
+// How a texture is filtered when it shrinks: kNone takes level 0 only.
+enum class MipFilter : std::uint8_t { kNone, kNearest, kLinear };
+
+// No reference. (Declared after MipFilter, whose enumerator of this name would shadow it.)
+inline constexpr int kNone = -1;
+
+}  // namespace tessera

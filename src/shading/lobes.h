@@ -1,0 +1,140 @@
+// The lobes of the shading models. Each gives the radiance that leaves towards the viewer per unit
+// of irradiance on a surface facing the light (reflectance times cosine), and the radiance under
+// ambient light. To add a lobe: a struct here and its place in the two functions at the end.
+#pragma once
+
+#include "shading/light.h"
+#include "shading/material.h"
+
+namespace tessera {
+
+inline constexpr float kInversePi = 0.31830988618379067154f;
+
+// Light that arrives from one direction.
+template <class F>
+struct Incidence {
+    Vec3T<F> to_light;
+    F n_l;  // cosine, not clamped
+};
+
+template <class F>
+TESSERA_INLINE F power_cosine(F cosine, float exponent) {
+    return math::pow(max(cosine, F(0.0f)), F(exponent));
+}
+
+// kd (l.n): Lambert's cosine law with I_l = irradiance / pi.
+struct LambertLobe {
+    template <class F>
+    static TESSERA_INLINE Vec3T<F> reflect(const MaterialView& m, const LobeParameters<F>& p, const Incidence<F>& i) {
+        return Vec3T<F>::load(m.diffuse) * p.base * (max(i.n_l, F(0.0f)) * F(kInversePi));
+    }
+};
+
+// ks (v.r)^ns with r = 2 (n.l) n - l (Phong 1975); nothing where n.l <= 0.
+struct PhongLobe {
+    template <class F>
+    static TESSERA_INLINE Vec3T<F> reflect(const MaterialView& m, const LobeParameters<F>& p, const Incidence<F>& i) {
+        const Vec3T<F> r = p.normal * (F(2.0f) * i.n_l) - i.to_light;
+        const F s = power_cosine(dot(p.view, r), m.shininess) * F(kInversePi);
+        return Vec3T<F>::load(m.specular) * select(i.n_l > F(0.0f), s, F(0.0f));
+    }
+};
+
+// ks (n.h)^ns with h = (l + v) / |l + v| (Blinn 1977); nothing where n.l <= 0.
+struct BlinnPhongLobe {
+    template <class F>
+    static TESSERA_INLINE Vec3T<F> reflect(const MaterialView& m, const LobeParameters<F>& p, const Incidence<F>& i) {
+        const Vec3T<F> h = normalize_or(i.to_light + p.view, p.normal);
+        const F s = power_cosine(dot(p.normal, h), m.shininess) * F(kInversePi);
+        return Vec3T<F>::load(m.specular) * select(i.n_l > F(0.0f), s, F(0.0f));
+    }
+};
+
+// glTF 2.0 metallic-roughness (specification, appendix B): Lambert under a GGX microfacet layer with
+// the height-correlated Smith term (Heitz 2014) and Schlick's Fresnel.
+struct MetallicRoughnessLobe {
+    // Below this roughness a highlight of a point light would be narrower than float can say.
+    static constexpr float kSmallestRoughness = 0.03f;
+
+    template <class F>
+    static TESSERA_INLINE Vec3T<F> f0(const LobeParameters<F>& p) {
+        return mix(Vec3T<F>::splat(F(0.04f)), p.base, p.metallic);
+    }
+    template <class F>
+    static TESSERA_INLINE Vec3T<F> diffuse_color(const LobeParameters<F>& p) {
+        return p.base * (F(1.0f) - p.metallic);
+    }
+
+    template <class F>
+    static TESSERA_INLINE Vec3T<F> reflect(const LobeParameters<F>& p, const Incidence<F>& i) {
+        const Vec3T<F> h = normalize_or(i.to_light + p.view, p.normal);
+        const F n_l = max(i.n_l, F(0.0f)), n_v = max(dot(p.normal, p.view), F(1e-4f));
+        const F n_h = saturate(dot(p.normal, h)), v_h = saturate(dot(p.view, h));
+        const F rough = max(p.roughness, F(kSmallestRoughness));
+        const F a = rough * rough, a2 = a * a;
+
+        const F c = F(1.0f) - v_h, c2 = c * c;
+        const Vec3T<F> base = f0(p);
+        const Vec3T<F> fresnel = base + (Vec3T<F>::splat(F(1.0f)) - base) * (c2 * c2 * c);
+
+        const F denominator = n_h * n_h * (a2 - F(1.0f)) + F(1.0f);
+        const F distribution = a2 * F(kInversePi) / max(denominator * denominator, F(1e-30f));
+        const F smith = n_l * sqrt(n_v * n_v * (F(1.0f) - a2) + a2) + n_v * sqrt(n_l * n_l * (F(1.0f) - a2) + a2);
+        const F specular = distribution * F(0.5f) / max(smith, F(1e-30f));
+
+        const Vec3T<F> diffuse = (Vec3T<F>::splat(F(1.0f)) - fresnel) * diffuse_color(p) * F(kInversePi);
+        return (diffuse + fresnel * specular) * n_l;
+    }
+
+    // Under ambient light the highlight's albedo is Karis' fit to the split-sum integral ("Physically
+    // Based Shading on Mobile", 2014).
+    template <class F>
+    static TESSERA_INLINE Vec3T<F> reflect_ambient(const LobeParameters<F>& p, const AmbientView& ambient) {
+        const F n_v = saturate(dot(p.normal, p.view));
+        const F rx = F(1.0f) - p.roughness, ry = F(0.0425f) - F(0.0275f) * p.roughness;
+        const F a004 = min(rx * rx, math::exp2(F(-9.28f) * n_v)) * rx + ry;
+        const F scale = F(1.04f) - F(0.572f) * p.roughness - F(1.04f) * a004;
+        const F bias = F(0.022f) * p.roughness - F(0.04f) + F(1.04f) * a004;
+        const Vec3T<F> albedo = f0(p) * scale + Vec3T<F>::splat(max(bias, F(0.0f)));
+        const Vec3T<F> mirrored = p.normal * (F(2.0f) * dot(p.normal, p.view)) - p.view;
+        return albedo * ambient_radiance(ambient, mirrored, p.roughness) +
+               (Vec3T<F>::splat(F(1.0f)) - albedo) * diffuse_color(p) * ambient_radiance(ambient, p.normal, F(1.0f));
+    }
+};
+
+// --- the list ---------------------------------------------------------------------------------
+
+template <class F>
+TESSERA_INLINE Vec3T<F> reflect_light(const MaterialView& m, const LobeParameters<F>& p, const Incidence<F>& i) {
+    switch (m.model) {
+        case ShadingModel::kLambert:
+            return LambertLobe::reflect(m, p, i);
+        case ShadingModel::kPhong:
+            return LambertLobe::reflect(m, p, i) + PhongLobe::reflect(m, p, i);
+        case ShadingModel::kBlinnPhong:
+            return LambertLobe::reflect(m, p, i) + BlinnPhongLobe::reflect(m, p, i);
+        case ShadingModel::kMetallicRoughness:
+            return MetallicRoughnessLobe::reflect(p, i);
+        case ShadingModel::kUnlit:
+            break;
+    }
+    return Vec3T<F>::splat(F(0.0f));
+}
+
+// The textbooks' Ia ka for the Phong models, whose Ia is the ambient radiance around the normal.
+template <class F>
+TESSERA_INLINE Vec3T<F> reflect_ambient(const MaterialView& m, const LobeParameters<F>& p, const AmbientView& ambient) {
+    switch (m.model) {
+        case ShadingModel::kLambert:
+        case ShadingModel::kPhong:
+        case ShadingModel::kBlinnPhong:
+            return Vec3T<F>::load(m.ambient) * p.base * ambient_radiance(ambient, p.normal, F(1.0f));
+        case ShadingModel::kMetallicRoughness:
+            return MetallicRoughnessLobe::reflect_ambient(p, ambient);
+        case ShadingModel::kUnlit:
+            break;
+    }
+    return Vec3T<F>::splat(F(0.0f));
+}
+
+}  // namespace tessera
