@@ -1,0 +1,23 @@
+// Bytes in and out of the command. A file is written under a temporary name beside its place and
+// renamed, so that a failure leaves nothing behind; what exists and is no plain file (a device, a
+// pipe) is written to directly. "-" is standard input or output. Throws tessera::Error.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace tessera::cli {
+
+// All of standard input; kLimit when it exceeds `max_bytes`.
+std::vector<std::byte> read_stdin(std::uint64_t max_bytes);
+
+// Throws kOutput now if `path` could not be written later: no such folder, or a folder itself.
+void check_writable(const std::string& path);
+void write_output(const std::string& path, std::span<const std::byte> data);
+void write_output(const std::string& path, std::string_view text);
+
+}  // namespace tessera::cli

@@ -1,0 +1,188 @@
+#include "cli/render_arguments.h"
+
+#include "cli/parse.h"
+
+#include <tessera/error.h>
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cctype>
+#include <initializer_list>
+#include <utility>
+
+namespace tessera::cli {
+namespace {
+
+constexpr double kRadiansPerDegree = 3.14159265358979323846 / 180;
+
+std::string lower(std::string text) {
+    std::transform(text.begin(), text.end(), text.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    return text;
+}
+
+bool ends_with(const std::string& text, const std::string& tail) {
+    return text.size() >= tail.size() && text.compare(text.size() - tail.size(), tail.size(), tail) == 0;
+}
+
+// The value that `text` names, or a refusal that lists the names.
+template <class T>
+T choose(const std::string& option, const std::string& text, std::initializer_list<std::pair<const char*, T>> choices) {
+    std::string names;
+    for (const auto& [name, value] : choices) {
+        if (text == name) return value;
+        names += (names.empty() ? "" : ", ") + std::string(name);
+    }
+    refuse(option, "'" + text + "' is none of " + names);
+}
+
+Engine parse_engine(const std::string& text) {
+    for (const char* planned : {"raster", "trace", "hybrid"})
+        if (text == planned)
+            refuse("--engine", text + " does not exist yet; there are reference-raster and reference-trace");
+    return choose<Engine>(
+        "--engine", text,
+        {{"reference-raster", Engine::kReferenceRaster}, {"reference-trace", Engine::kReferenceTrace}});
+}
+
+View parse_view(const RenderArguments& a, bool& z_is_up) {
+    View view;
+    if (!a.camera.empty() && (!a.eye.empty() || !a.target.empty())) refuse("--camera", "excludes --eye and --target");
+    if (!a.target.empty() && a.eye.empty()) refuse("--target", "needs --eye");
+    if (!a.eye.empty()) view.eye = parse_vector("--eye", a.eye);
+    if (!a.target.empty()) view.target = parse_vector("--target", a.target);
+    if (view.eye && view.target && *view.eye == *view.target) refuse("--target", "is the same point as --eye");
+    z_is_up = a.up == "z";
+    if (a.up != "y" && a.up != "z") view.up = parse_vector("--up", a.up);
+    if (view.up == Vec3{}) refuse("--up", "has no length");
+    if (!a.fov.empty()) view.yfov = static_cast<float>(parse_number("--fov", a.fov, 0.1, 179) * kRadiansPerDegree);
+    return view;
+}
+
+Codec parse_codec(const std::string& output) {
+    const std::string name = lower(output);
+    if (output == "-" || output.empty() || ends_with(name, ".png")) return Codec::kPng;
+    if (ends_with(name, ".jpg") || ends_with(name, ".jpeg")) return Codec::kJpeg;
+    if (output.compare(0, 5, "/dev/") == 0) return Codec::kPng;
+    refuse("--output", "'" + output + "' does not end in .png, .jpg or .jpeg");
+}
+
+void check_outputs(const RenderArguments& a) {
+    if (a.output.empty() && a.stats.empty())
+        refuse("--output", "say where the picture goes: -o FILE, or -o - for stdout");
+    if (a.output == "-" && a.stats == "-") refuse("--stats", "stdout already carries the picture (-o -)");
+    if (!a.output.empty() && a.output != "-" && a.output == a.stats) refuse("--stats", "is the same file as --output");
+    if (a.output == "-" && isatty(STDOUT_FILENO) != 0)
+        refuse("--output", "stdout is a terminal: redirect it or name a file");
+}
+
+}  // namespace
+
+void add_render_options(CLI::App& app, RenderArguments& a) {
+    const auto option = [&app](const char* group, const char* names, std::string& value, const char* type,
+                               const char* help) {
+        // An empty value is refused by name; it would otherwise look as if the option were absent.
+        const auto not_empty = [](std::string& text) { return text.empty() ? std::string("is empty") : std::string(); };
+        CLI::Option* added = app.add_option(names, value, help)->group(group)->option_text(type);
+        added->check(CLI::Validator(not_empty, "", "not empty"))->multi_option_policy(CLI::MultiOptionPolicy::Throw);
+        return added;
+    };
+
+    option("Input and output", "scene", a.scene, "", "scene file (.gltf, .glb), or - to read it from stdin")
+        ->required();
+    option("Input and output", "-o,--output", a.output, "FILE",
+           "picture to write: .png, .jpg or .jpeg; - streams PNG to stdout");
+    option("Input and output", "--stats", a.stats, "FILE", "write statistics as JSON to FILE, or to stdout with -");
+    option("Input and output", "--quality", a.quality, "1..100", "quality of JPEG (default 92)");
+    option("Input and output", "--png-level", a.png_level, "0..12", "0 stores, 12 is smallest and slowest (default 1)");
+    option("Input and output", "--color-bits", a.color_bits, "R-G-B",
+           "reduce to so many bits a channel, such as 3-3-2");
+    option("Input and output", "--aov", a.aov, "LIST", "planes to write: color");
+    app.add_flag("-q,--quiet", a.quiet, "no warnings and no progress bar")->group("Input and output");
+
+    option("Picture", "-s,--size", a.size, "WxH", "size in pixels (default 1024x768)");
+    option("Picture", "--engine", a.engine, "NAME",
+           "reference-raster (z-buffer, the default) or reference-trace (ray caster with hard shadows)");
+    option("Picture", "--samples", a.samples, "N", "samples per pixel, 1 .. 256 (default 4)");
+    option("Picture", "--background", a.background, "COLOUR",
+           "none (transparent), #rrggbb, #rrggbbaa, r,g,b[,a] (each 0 .. 1) or a name (default white)");
+    option("Picture", "--exposure", a.exposure, "EV", "auto (default), or stops: each doubles the brightness");
+    option("Picture", "--tone-map", a.tone_map, "NAME", "neutral (Khronos PBR Neutral, default), aces or none");
+    option("Picture", "--time", a.time, "S", "seconds into the animation: only 0 is possible yet");
+
+    option("Camera", "--camera", a.camera, "NAME|INDEX", "one of the scene's cameras (default: the first)");
+    option("Camera", "--eye", a.eye, "X,Y,Z", "stand here instead (default: three-quarter view of the whole)");
+    option("Camera", "--target", a.target, "X,Y,Z", "look at this point (default: the middle of the scene)");
+    option("Camera", "--up", a.up, "y|z|X,Y,Z",
+           "y (default), z for files whose up axis is Z, or the camera's up direction");
+    option("Camera", "--fov", a.fov, "DEGREES", "vertical field of view (default 45)");
+
+    option("Light", "--lighting", a.lighting, "NAME", "auto (default), scene (only its own lights) or studio");
+    option("Light", "--ambient", a.ambient, "X", "uniform ambient radiance");
+    app.add_flag("--no-shadows", a.no_shadows, "leave out shadows where the engine has them")->group("Light");
+
+    option("Machine", "--threads", a.threads, "N", "threads to use (default: all this process may)");
+    option("Machine", "--isa", a.isa, "NAME", "auto (default), scalar, sse4, avx2 or avx512; the picture is the same");
+    option("Machine", "--seed", a.seed, "N", "seed of random sampling (the reference engines use fixed samples)");
+
+    option("Limits", "--max-triangles", a.max_triangles, "N", "refuse scenes with more (default 67108864)");
+    option("Limits", "--max-pixels", a.max_pixels, "N", "refuse larger textures or pictures (default 268435456)");
+    option("Limits", "--max-memory", a.max_memory, "BYTES", "memory for scene and frame, such as 512M or 2G");
+    option("Limits", "--timeout", a.timeout, "S", "give up after so many seconds (exit code 6)");
+
+    app.footer(
+        "Examples:\n"
+        "  tessera render model.glb -o model.png\n"
+        "  tessera render model.glb -o - -s 256x256 --background none > thumbnail.png\n"
+        "  tessera render room.gltf -o room.jpg --engine reference-trace --camera front --samples 16\n"
+        "  tessera render model.glb -o model.png --eye 3,2,4 --target 0,1,0 --fov 35 --stats model.json\n"
+        "\nThe colour statistics' color_hash is the same on every machine and for every --isa and --threads.");
+}
+
+RenderJob parse_render_arguments(const RenderArguments& a) {
+    RenderJob job;
+    RenderOptions& render = job.render;
+    check_outputs(a);
+    job.codec = parse_codec(a.output);
+    job.quality = static_cast<int>(parse_integer("--quality", a.quality, 1, 100));
+    job.png_level = static_cast<int>(parse_integer("--png-level", a.png_level, 0, 12));
+    if (!a.color_bits.empty()) job.color_bits = parse_color_bits("--color-bits", a.color_bits);
+    if (a.aov != "color") refuse("--aov", "'" + a.aov + "' does not exist yet; there is color");
+
+    const Size size = parse_size("--size", a.size);
+    render.width = size.width, render.height = size.height;
+    render.engine = parse_engine(a.engine);
+    render.samples = static_cast<int>(parse_integer("--samples", a.samples, 1, 256));
+    render.background = parse_background("--background", a.background);
+    if (a.exposure != "auto") render.exposure_ev = static_cast<float>(parse_number("--exposure", a.exposure, -40, 40));
+    render.tone_map = choose<ToneMap>(
+        "--tone-map", a.tone_map, {{"neutral", ToneMap::kNeutral}, {"aces", ToneMap::kAces}, {"none", ToneMap::kNone}});
+    if (parse_number("--time", a.time, 0, 1e9) != 0)
+        refuse("--time", "animation does not exist yet; only 0 is possible");
+
+    job.camera = a.camera;
+    render.view = parse_view(a, job.z_is_up);
+
+    render.lighting =
+        choose<Lighting>("--lighting", a.lighting,
+                         {{"auto", Lighting::kAuto}, {"scene", Lighting::kScene}, {"studio", Lighting::kStudio}});
+    if (!a.ambient.empty()) render.ambient = static_cast<float>(parse_number("--ambient", a.ambient, 0, 1e9));
+    render.shadows = !a.no_shadows;
+
+    if (!a.threads.empty()) render.threads = static_cast<int>(parse_integer("--threads", a.threads, 1, 1024));
+    render.isa = parse_isa(a.isa);
+    parse_integer("--seed", a.seed, 0, INT64_MAX);
+
+    job.load.threads = render.threads;
+    if (!a.max_triangles.empty())
+        job.load.max_triangles =
+            static_cast<std::uint64_t>(parse_integer("--max-triangles", a.max_triangles, 0, INT64_MAX));
+    if (!a.max_pixels.empty())
+        job.load.max_pixels = static_cast<std::uint64_t>(parse_integer("--max-pixels", a.max_pixels, 1, INT64_MAX));
+    if (!a.max_memory.empty()) job.load.max_bytes = render.max_bytes = parse_bytes("--max-memory", a.max_memory);
+    if (!a.timeout.empty()) job.timeout = parse_number("--timeout", a.timeout, 0.001, 1e9);
+    return job;
+}
+
+}  // namespace tessera::cli

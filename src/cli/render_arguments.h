@@ -1,0 +1,47 @@
+// The options of `tessera render` as text, as they stand on the command line, and what they mean to
+// the library. Values are checked by hand (parse.h) so that every refusal names its option.
+#pragma once
+
+#include <tessera/load.h>
+#include <tessera/render.h>
+
+#include <CLI/App.hpp>
+
+#include <array>
+#include <optional>
+#include <string>
+
+namespace tessera::cli {
+
+struct RenderArguments {
+    std::string scene, output, stats;
+    std::string size = "1024x768", engine = "reference-raster", samples = "4", aov = "color", time = "0";
+    std::string camera, eye, target, up = "y", fov;
+    std::string background = "white", exposure = "auto", tone_map = "neutral", color_bits;
+    std::string lighting = "auto", ambient;
+    std::string threads, isa = "auto", seed = "0", quality = "92", png_level = "1";
+    std::string max_triangles, max_pixels, max_memory, timeout;
+    bool no_shadows = false, quiet = false;
+};
+
+void add_render_options(CLI::App& app, RenderArguments& arguments);
+
+enum class Codec { kPng, kJpeg };
+
+// The arguments with their meaning. `camera` stays text: it names a part of the scene.
+struct RenderJob {
+    LoadOptions load;
+    RenderOptions render;
+    std::string camera;
+    bool z_is_up = false;
+    Codec codec = Codec::kPng;
+    int quality = 92, png_level = 1;
+    std::optional<std::array<int, 3>> color_bits;
+    std::optional<double> timeout;  // seconds
+    std::uint64_t max_pixels = 0;
+};
+
+// Throws kUsage, naming the option, unless all of it makes sense.
+RenderJob parse_render_arguments(const RenderArguments& arguments);
+
+}  // namespace tessera::cli

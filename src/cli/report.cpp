@@ -1,0 +1,49 @@
+#include "cli/report.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+
+namespace tessera::cli {
+
+std::string printable(std::string_view text) {
+    std::string clean(text);
+    for (char& c : clean)
+        if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = ' ';
+    return clean;
+}
+
+void report_error(const std::string& text) { std::fprintf(stderr, "tessera: error: %s\n", printable(text).c_str()); }
+
+void report_warnings(const std::string& file, const std::vector<std::string>& warnings) {
+    constexpr std::size_t kScreenful = 20;
+    const std::size_t shown = std::min(warnings.size(), kScreenful);
+    for (std::size_t i = 0; i < shown; ++i) {
+        const bool named = warnings[i].compare(0, file.size(), file) == 0;
+        const std::string line = named ? warnings[i] : file + ": " + warnings[i];
+        std::fprintf(stderr, "tessera: warning: %s\n", printable(line).c_str());
+    }
+    if (warnings.size() > shown)
+        std::fprintf(stderr, "tessera: warning: %s: and %zu more warnings\n", printable(file).c_str(),
+                     warnings.size() - shown);
+}
+
+ProgressBar::ProgressBar(bool enabled) : active_(enabled && isatty(STDERR_FILENO) != 0) {}
+
+ProgressBar::~ProgressBar() {
+    if (active_ && shown_percent_ >= 0) std::fputs("\r\033[K", stderr);
+}
+
+void ProgressBar::show(double fraction) {
+    const int percent = static_cast<int>(100 * std::clamp(fraction, 0.0, 1.0));
+    if (!active_ || percent == shown_percent_) return;
+    shown_percent_ = percent;
+    constexpr int kWidth = 40;
+    std::string bar(kWidth, ' ');
+    std::fill_n(bar.begin(), percent * kWidth / 100, '=');
+    std::fprintf(stderr, "\r[%s] %3d %%", bar.c_str(), percent);
+    std::fflush(stderr);
+}
+
+}  // namespace tessera::cli

@@ -1,0 +1,61 @@
+#include "cli/scene_input.h"
+
+#include "cli/files.h"
+#include "cli/parse.h"
+
+#include <tessera/error.h>
+
+#include <algorithm>
+#include <charconv>
+#include <utility>
+
+namespace tessera::cli {
+
+std::string input_name(const std::string& path) { return path == "-" ? "<stdin>" : path; }
+
+Scene load_input(const std::string& path, const LoadOptions& options) {
+    try {
+        if (path != "-") return load_scene(path, options);
+        return load_scene_from_memory(read_stdin(options.max_bytes), "", options, "<stdin>");
+    } catch (const Error& error) {
+        if (!error.file().empty()) throw;
+        throw Error(error.code(), error.message(), input_name(path), error.location());
+    }
+}
+
+int find_camera(const Scene& scene, const std::string& text) {
+    const int count = static_cast<int>(scene.cameras.size());
+    const auto camera =
+        std::find_if(scene.cameras.begin(), scene.cameras.end(), [&](const Camera& c) { return c.name == text; });
+    if (camera != scene.cameras.end()) return static_cast<int>(camera - scene.cameras.begin());
+    for (const Node& node : scene.nodes)
+        if (node.camera != kNone && node.name == text) return node.camera;
+
+    int index = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), index);
+    const bool number = error == std::errc{} && end == text.data() + text.size();
+    if (number && index >= 0 && index < count) return index;
+
+    std::string reason = "the scene has no camera '" + text + "'";
+    constexpr int kListed = 12;
+    for (int i = 0; i < std::min(count, kListed); ++i) {
+        const std::string& name = scene.cameras[static_cast<std::size_t>(i)].name;
+        reason += (i == 0 ? "; there are: " : ", ") + std::to_string(i) + (name.empty() ? "" : " '" + name + "'");
+    }
+    if (count > kListed) reason += ", ...";
+    refuse("--camera", reason);
+}
+
+Vec3 turn_z_up(Vec3 p) { return {p.x, p.z, -p.y}; }
+
+void turn_z_up(Scene& scene) {
+    if (scene.active_scene == kNone || scene.scenes.empty()) return;
+    SceneRoots& active = scene.scenes[static_cast<std::size_t>(scene.active_scene)];
+    Node turn;
+    turn.name = "Z up";
+    turn.matrix = Mat4{{1, 0, 0, 0, 0, 0, -1, 0, 0, 1, 0, 0, 0, 0, 0, 1}};
+    turn.children = std::exchange(active.nodes, {static_cast<int>(scene.nodes.size())});
+    scene.nodes.push_back(std::move(turn));
+}
+
+}  // namespace tessera::cli

@@ -1,0 +1,250 @@
+#include "cli/scene_summary.h"
+
+#include "cli/json_writer.h"
+#include "cli/report.h"
+
+#include <tessera/render.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <string_view>
+#include <vector>
+
+namespace tessera::cli {
+namespace {
+
+std::uint64_t triangle_count(const Primitive& primitive) {
+    const std::uint64_t n = primitive.indices.empty() ? primitive.positions.size() : primitive.indices.size();
+    switch (primitive.mode) {
+        case PrimitiveMode::kTriangles:
+            return n / 3;
+        case PrimitiveMode::kTriangleStrip:
+        case PrimitiveMode::kTriangleFan:
+            return n < 3 ? 0 : n - 2;
+        default:
+            return 0;
+    }
+}
+
+// Seconds from 0 to the last key.
+double duration(const Animation& animation) {
+    float last = 0;
+    for (const AnimationSampler& sampler : animation.samplers)
+        if (!sampler.times.empty()) last = std::max(last, sampler.times.back());
+    return last;
+}
+
+const char* type_name(const Camera& camera) {
+    return camera.type == Camera::Type::kPerspective ? "perspective" : "orthographic";
+}
+
+const char* type_name(const Light& light) {
+    switch (light.type) {
+        case Light::Type::kDirectional:
+            return "directional";
+        case Light::Type::kPoint:
+            return "point";
+        case Light::Type::kSpot:
+            return "spot";
+    }
+    return "";
+}
+
+const char* model_name(const Material& material) {
+    switch (material.model) {
+        case ShadingModel::kMetallicRoughness:
+            return "metallic-roughness";
+        case ShadingModel::kUnlit:
+            return "unlit";
+        case ShadingModel::kLambert:
+            return "lambert";
+        case ShadingModel::kPhong:
+            return "phong";
+        case ShadingModel::kBlinnPhong:
+            return "blinn-phong";
+    }
+    return "";
+}
+
+const char* alpha_name(const Material& material) {
+    switch (material.alpha_mode) {
+        case AlphaMode::kOpaque:
+            return "opaque";
+        case AlphaMode::kMask:
+            return "mask";
+        case AlphaMode::kBlend:
+            return "blend";
+    }
+    return "";
+}
+
+int width(const Picture& picture) { return picture.pixels ? picture.pixels->width() : 0; }
+int height(const Picture& picture) { return picture.pixels ? picture.pixels->height() : 0; }
+
+// --- text -----------------------------------------------------------------------------------
+
+std::string number(double value) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.6g", value);
+    return text;
+}
+
+std::string vector_text(Vec3 v) { return number(v.x) + ", " + number(v.y) + ", " + number(v.z); }
+
+// One aligned line of the report.
+std::string line(std::string_view label, const std::string& value) {
+    std::string text(label);
+    text.resize(std::max<std::size_t>(text.size() + 1, 14), ' ');
+    return text + value + "\n";
+}
+
+// Long lists end with how many more there are.
+template <class T, class Describe>
+std::string list(std::string_view label, const std::vector<T>& items, Describe describe) {
+    constexpr std::size_t kListed = 16;
+    std::string text = line(label, std::to_string(items.size()));
+    for (std::size_t i = 0; i < std::min(items.size(), kListed); ++i)
+        text += "  " + std::to_string(i) + ": " + printable(describe(items[i])) + "\n";
+    if (items.size() > kListed) text += "  and " + std::to_string(items.size() - kListed) + " more\n";
+    return text;
+}
+
+template <class T>
+std::string titled(const T& item, const std::string& rest) {
+    return item.name.empty() ? rest : item.name + " (" + rest + ")";
+}
+
+std::string names(std::string_view label, const std::vector<std::string>& items) {
+    if (items.empty()) return {};
+    std::string joined;
+    for (const std::string& item : items) joined += (joined.empty() ? "" : ", ") + printable(item);
+    return line(label, joined);
+}
+
+// --- JSON -----------------------------------------------------------------------------------
+
+void write(JsonWriter& json, Vec3 v) { json.begin_array().value(v.x).value(v.y).value(v.z).end_array(); }
+
+void write(JsonWriter& json, std::string_view key, const std::vector<std::string>& items) {
+    json.key(key).begin_array();
+    for (const std::string& item : items) json.value(std::string_view(item));
+    json.end_array();
+}
+
+template <class T, class Members>
+void write(JsonWriter& json, std::string_view key, const std::vector<T>& items, Members members) {
+    json.key(key).begin_array();
+    for (const T& item : items) {
+        json.begin_object().member("name", item.name);
+        members(item);
+        json.end_object();
+    }
+    json.end_array();
+}
+
+}  // namespace
+
+SceneSummary summarize(const Scene& scene) {
+    SceneSummary summary;
+    std::vector<std::uint64_t> triangles_of_mesh;
+    for (const Mesh& mesh : scene.meshes) {
+        std::uint64_t triangles = 0;
+        for (const Primitive& primitive : mesh.primitives) {
+            ++summary.primitives;
+            summary.vertices += primitive.positions.size();
+            triangles += triangle_count(primitive);
+        }
+        triangles_of_mesh.push_back(triangles);
+        summary.triangles += triangles;
+    }
+    // The nodes are a forest, so an explicit stack sees each at most once.
+    std::vector<int> pending;
+    if (scene.active_scene != kNone && !scene.scenes.empty())
+        pending = scene.scenes[static_cast<std::size_t>(scene.active_scene)].nodes;
+    while (!pending.empty()) {
+        const Node& node = scene.nodes[static_cast<std::size_t>(pending.back())];
+        pending.pop_back();
+        pending.insert(pending.end(), node.children.begin(), node.children.end());
+        if (node.mesh == kNone) continue;
+        ++summary.drawn_instances;
+        summary.drawn_triangles += triangles_of_mesh[static_cast<std::size_t>(node.mesh)];
+    }
+    summary.memory_bytes = memory_bytes(scene);
+    summary.bounds = visible_bounds(scene);
+    return summary;
+}
+
+std::string summary_text(const std::string& file, const Scene& scene, const SceneSummary& s) {
+    std::string text = line("file", printable(file));
+    if (!scene.generator.empty()) text += line("generator", printable(scene.generator));
+    if (!scene.copyright.empty()) text += line("copyright", printable(scene.copyright));
+    text += line("triangles", std::to_string(s.drawn_triangles) + " drawn by " + std::to_string(s.drawn_instances) +
+                                  " mesh instances (" + std::to_string(s.triangles) + " stored)");
+    text += line("vertices", std::to_string(s.vertices));
+    text += s.bounds.empty()
+                ? line("bounds", "nothing is drawn")
+                : line("bounds", "(" + vector_text(s.bounds.min) + ") to (" + vector_text(s.bounds.max) + ")");
+    text += line("memory", number(static_cast<double>(s.memory_bytes) / 1048576) + " MiB");
+    text +=
+        line("nodes", std::to_string(scene.nodes.size()) + " in " + std::to_string(scene.scenes.size()) + " scenes");
+    text +=
+        line("meshes", std::to_string(scene.meshes.size()) + " with " + std::to_string(s.primitives) + " primitives");
+    text += list("materials", scene.materials,
+                 [](const Material& m) { return titled(m, std::string(model_name(m)) + ", " + alpha_name(m)); });
+    text += line("textures", std::to_string(scene.textures.size()));
+    text += list("pictures", scene.pictures, [](const Picture& p) {
+        const std::string size = std::to_string(width(p)) + "x" + std::to_string(height(p));
+        return titled(p, size + (p.uri.empty() || p.uri.compare(0, 5, "data:") == 0 ? ", embedded" : ", " + p.uri));
+    });
+    text += list("cameras", scene.cameras, [](const Camera& c) { return titled(c, type_name(c)); });
+    text += list("lights", scene.lights, [](const Light& l) { return titled(l, type_name(l)); });
+    text += line("skins", std::to_string(scene.skins.size()));
+    text +=
+        list("animations", scene.animations, [](const Animation& a) { return titled(a, number(duration(a)) + " s"); });
+    text += names("extensions used", scene.extensions_used) + names("extensions required", scene.extensions_required) +
+            names("extensions ignored", scene.extensions_ignored);
+    for (const std::string& warning : scene.warnings) text += line("warning", printable(warning));
+    return text;
+}
+
+std::string summary_json(const std::string& file, const Scene& scene, const SceneSummary& s) {
+    JsonWriter json;
+    json.begin_object().member("file", file);
+    json.member("generator", scene.generator).member("copyright", scene.copyright);
+    json.key("counts").begin_object();
+    json.member("scenes", scene.scenes.size()).member("nodes", scene.nodes.size());
+    json.member("meshes", scene.meshes.size()).member("primitives", s.primitives);
+    json.member("vertices", s.vertices).member("triangles", s.triangles);
+    json.member("drawn_instances", s.drawn_instances).member("drawn_triangles", s.drawn_triangles);
+    json.member("materials", scene.materials.size()).member("textures", scene.textures.size());
+    json.member("pictures", scene.pictures.size()).member("samplers", scene.samplers.size());
+    json.member("cameras", scene.cameras.size()).member("lights", scene.lights.size());
+    json.member("skins", scene.skins.size()).member("animations", scene.animations.size()).end_object();
+    json.key("bounds");
+    if (s.bounds.empty()) {
+        json.null();
+    } else {
+        json.begin_object().key("min");
+        write(json, s.bounds.min);
+        json.key("max");
+        write(json, s.bounds.max);
+        json.end_object();
+    }
+    json.member("memory_bytes", s.memory_bytes);
+    write(json, "materials", scene.materials,
+          [&](const Material& m) { json.member("model", model_name(m)).member("alpha_mode", alpha_name(m)); });
+    write(json, "pictures", scene.pictures, [&](const Picture& p) {
+        const bool data = p.uri.compare(0, 5, "data:") == 0;
+        json.member("uri", data ? std::string("data:") : p.uri).member("width", width(p)).member("height", height(p));
+    });
+    write(json, "cameras", scene.cameras, [&](const Camera& c) { json.member("type", type_name(c)); });
+    write(json, "lights", scene.lights, [&](const Light& l) { json.member("type", type_name(l)); });
+    write(json, "animations", scene.animations, [&](const Animation& a) { json.member("duration_s", duration(a)); });
+    write(json, "extensions_used", scene.extensions_used);
+    write(json, "extensions_required", scene.extensions_required);
+    write(json, "extensions_ignored", scene.extensions_ignored);
+    write(json, "warnings", scene.warnings);
+    return json.end_object().text();
+}
+
+}  // namespace tessera::cli

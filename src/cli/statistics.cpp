@@ -1,0 +1,51 @@
+#include "cli/statistics.h"
+
+#include "cli/json_writer.h"
+
+#include <tessera/version.h>
+
+#include <sys/resource.h>
+
+#include <cstdio>
+
+namespace tessera::cli {
+
+double peak_memory_mb() {
+    struct rusage usage {};
+    if (::getrusage(RUSAGE_SELF, &usage) != 0) return 0;
+    return static_cast<double>(usage.ru_maxrss) / 1024;  // Linux counts KiB
+}
+
+std::string statistics_json(const std::string& scene, const RenderOptions& options, const RenderResult& result,
+                            const CommandTimes& times) {
+    const RenderStats& stats = result.stats;
+    char hash[17];
+    std::snprintf(hash, sizeof hash, "%016llx", static_cast<unsigned long long>(stats.color_hash));
+
+    JsonWriter json;
+    json.begin_object();
+    json.member("version", TESSERA_VERSION).member("scene", scene);
+    json.member("engine", name(stats.engine)).member("isa", name(stats.isa)).member("threads", stats.threads);
+    json.member("width", result.color.width()).member("height", result.color.height());
+    json.member("samples", options.samples).member("exposure", stats.exposure);
+    json.member("color_hash", std::string_view(hash));
+    json.member("triangles", stats.triangles);
+    json.key("culls").begin_object();
+    json.member("frustum", stats.culled_frustum).member("backface", stats.culled_backface);
+    json.member("degenerate", stats.culled_degenerate);
+    json.end_object();
+    json.member("clipped", stats.clipped);
+    json.member("pixels_covered", stats.pixels_covered).member("fragments_passed", stats.fragments_passed);
+    json.key("phases_ms").begin_object();
+    for (const auto& [phase, milliseconds] : stats.phases_ms) json.member(phase, milliseconds);
+    json.end_object();
+    json.member("frame_ms", stats.frame_ms).member("cpu_ms", stats.cpu_ms);
+    json.member("load_ms", times.load_ms).member("encode_ms", times.encode_ms).member("total_ms", times.total_ms);
+    json.member("peak_rss_mb", peak_memory_mb());
+    json.key("warnings").begin_array();
+    for (const std::string& warning : result.warnings) json.value(std::string_view(warning));
+    json.end_array();
+    return json.end_object().text();
+}
+
+}  // namespace tessera::cli
