@@ -17,6 +17,7 @@
 #include <exception>
 #include <new>
 #include <string>
+#include <vector>
 
 namespace tessera::cli {
 namespace {
@@ -53,6 +54,14 @@ int print(const std::string& text) {
     return written ? kFine : kOutputError;
 }
 
+// Names the argument that nothing expects: an option rather than what may have been its value.
+std::string unexpected(const CLI::App& application) {
+    const std::vector<std::string> rest = application.remaining(true);
+    for (const std::string& argument : rest)
+        if (argument.size() > 1 && argument[0] == '-') return argument + ": there is no such option";
+    return (rest.empty() ? std::string("arguments") : "'" + rest.back() + "'") + ": not expected here";
+}
+
 int parse_and_run(int argc, char** argv) {
     CLI::App application("Tessera renders 3D scenes (glTF 2.0) to pictures, without a GPU or a display.", "tessera");
     bool version = false;
@@ -67,10 +76,11 @@ int parse_and_run(int argc, char** argv) {
     try {
         application.parse(argc, argv);
     } catch (const CLI::CallForHelp&) {
-        const CLI::App* shown = &application;
         for (const Command& command : commands)
-            if (command.app->parsed()) shown = command.app;
-        return print(shown->help());
+            if (command.app->parsed()) return print(command.app->help("tessera"));
+        return print(application.help());
+    } catch (const CLI::ExtrasError&) {
+        throw Error(ErrorCode::kUsage, unexpected(application));
     } catch (const CLI::ParseError& error) {
         throw Error(ErrorCode::kUsage, error.what());
     }

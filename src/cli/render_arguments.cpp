@@ -137,7 +137,7 @@ void add_render_options(CLI::App& app, RenderArguments& a) {
         "  tessera render model.glb -o - -s 256x256 --background none > thumbnail.png\n"
         "  tessera render room.gltf -o room.jpg --engine reference-trace --camera front --samples 16\n"
         "  tessera render model.glb -o model.png --eye 3,2,4 --target 0,1,0 --fov 35 --stats model.json\n"
-        "\nThe colour statistics' color_hash is the same on every machine and for every --isa and --threads.");
+        "\nThe color_hash of --stats is the same on every machine, for every --isa and for every --threads.");
 }
 
 RenderJob parse_render_arguments(const RenderArguments& a) {
