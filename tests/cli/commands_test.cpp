@@ -1,0 +1,169 @@
+// The command as a whole, `tessera info` and `tessera diff` from end to end.
+#include "cli/json_writer.h"
+#include "cli/run_command.h"
+
+#include <tessera/image.h>
+#include <tessera/version.h>
+
+#include <simdjson.h>
+
+#include <limits>
+
+namespace {
+
+using Cli = CliTest;
+
+TEST_F(Cli, VersionAndHelpGoToStdout) {
+    const Outcome version = run_command({"--version"});
+    EXPECT_EQ(version.code, 0);
+    EXPECT_EQ(version.err, "");
+    EXPECT_EQ(version.out.rfind("tessera " TESSERA_VERSION "\n", 0), 0u) << version.out;
+    EXPECT_NE(version.out.find("scalar"), std::string::npos);
+    for (const std::vector<std::string>& arguments :
+         std::vector<std::vector<std::string>>{{"--help"}, {"render", "--help"}, {"info", "-h"}, {"diff", "--help"}}) {
+        const Outcome help = run_command(arguments);
+        EXPECT_EQ(help.code, 0);
+        EXPECT_EQ(help.err, "");
+        EXPECT_NE(help.out.find("tessera"), std::string::npos) << help.out;
+    }
+}
+
+TEST_F(Cli, UnknownCommandsAreRefused) {
+    for (const std::vector<std::string>& arguments :
+         std::vector<std::vector<std::string>>{{}, {"paint"}, {"--verbose"}, {"info"}, {"diff", "a.png"}}) {
+        const Outcome run = run_command(arguments);
+        EXPECT_EQ(run.code, 2);
+        EXPECT_EQ(run.out, "");
+        EXPECT_EQ(run.error_lines(), 1) << run.err;
+    }
+}
+
+TEST_F(Cli, InfoCountsTheHierarchyScene) {
+    const Outcome run = run_command({"info", scene("hierarchy.gltf"), "--json"});
+    ASSERT_EQ(run.code, 0) << run.err;
+    simdjson::dom::parser parser;
+    simdjson::dom::element json;
+    ASSERT_EQ(parser.parse(run.out).get(json), simdjson::SUCCESS) << run.out;
+    EXPECT_EQ(std::uint64_t(json["counts"]["cameras"]), 2u);
+    EXPECT_EQ(std::uint64_t(json["counts"]["lights"]), 2u);
+    EXPECT_EQ(std::string_view(json["cameras"].at(0)["name"]), "main");
+    EXPECT_EQ(std::string_view(json["lights"].at(0)["type"]), "directional");
+    EXPECT_GT(std::uint64_t(json["counts"]["drawn_triangles"]), std::uint64_t(json["counts"]["triangles"]))
+        << "bolts, crates and fingers are instances";
+    // The floor spans 28 m and nothing is below it.
+    EXPECT_DOUBLE_EQ(double(json["bounds"]["min"].at(0)), -14);
+    EXPECT_DOUBLE_EQ(double(json["bounds"]["max"].at(2)), 14);
+    EXPECT_DOUBLE_EQ(double(json["bounds"]["min"].at(1)), 0);
+    EXPECT_GT(std::uint64_t(json["memory_bytes"]), 10000u);
+
+    const Outcome text = run_command({"info", scene("hierarchy.gltf")});
+    EXPECT_EQ(text.code, 0);
+    EXPECT_NE(text.out.find("main (perspective)"), std::string::npos) << text.out;
+}
+
+TEST_F(Cli, InfoShowsPicturesAndExtensions) {
+    const Outcome run = run_command({"info", scene("materials.gltf"), "--json"});
+    ASSERT_EQ(run.code, 0) << run.err;
+    simdjson::dom::parser parser;
+    const simdjson::dom::element json = parser.parse(run.out);
+    EXPECT_EQ(std::uint64_t(json["pictures"].at(0)["width"]), 128u);
+    EXPECT_EQ(std::uint64_t(json["pictures"].at(1)["height"]), 64u);
+    EXPECT_EQ(simdjson::dom::array(json["extensions_ignored"]).size(), 0u) << run.out;
+    EXPECT_EQ(simdjson::dom::array(json["extensions_used"]).size(), 4u);
+    std::vector<std::string_view> models;
+    for (const auto material : simdjson::dom::array(json["materials"])) models.push_back(material["model"]);
+    for (const char* model : {"metallic-roughness", "unlit", "lambert", "phong", "blinn-phong"})
+        EXPECT_NE(std::find(models.begin(), models.end(), model), models.end()) << model;
+}
+
+class CliDiff : public CliTest {
+  protected:
+    void SetUp() override {
+        CliTest::SetUp();
+        if (IsSkipped()) return;
+        tessera::Image image(8, 4, tessera::PixelFormat::kRgba8);
+        for (std::size_t i = 0; i < image.bytes().size(); ++i) image.data<unsigned char>()[i] = i % 4 == 3 ? 255 : 100;
+        tessera::write_image(in_folder("a.png"), image);
+        image.data<unsigned char>()[0] = 110;   // one pixel by 10 ...
+        image.data<unsigned char>()[21] = 103;  // ... and another by 3
+        tessera::write_image(in_folder("b.png"), image);
+        tessera::write_image(in_folder("small.png"), tessera::Image(4, 4, tessera::PixelFormat::kRgba8));
+    }
+    Outcome diff(std::vector<std::string> more) const {
+        std::vector<std::string> arguments{"diff", in_folder("a.png"), in_folder("b.png")};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        return run_command(arguments);
+    }
+};
+
+TEST_F(CliDiff, MeasuresAgainstHandCalculatedValues) {
+    const Outcome run = diff({"--json"});
+    EXPECT_EQ(run.code, 3);
+    simdjson::dom::parser parser;
+    simdjson::dom::element json;
+    ASSERT_EQ(parser.parse(run.out).get(json), simdjson::SUCCESS) << run.out;
+    EXPECT_EQ(std::uint64_t(json["differing_pixels"]), 2u);
+    EXPECT_EQ(std::uint64_t(json["pixels"]), 32u);
+    EXPECT_DOUBLE_EQ(double(json["max_error"]), 10);
+    EXPECT_EQ(bool(json["equal"]), false);
+}
+
+TEST_F(CliDiff, ToleranceAndCountDecide) {
+    EXPECT_EQ(diff({}).code, 3);
+    EXPECT_EQ(diff({"--tolerance", "9"}).code, 3);
+    EXPECT_EQ(diff({"--tolerance", "10"}).code, 0);
+    EXPECT_EQ(diff({"--max-differing", "1"}).code, 3);
+    EXPECT_EQ(diff({"--max-differing", "2"}).code, 0);
+    EXPECT_EQ(diff({"--max-differing", "1", "--tolerance", "3"}).code, 0);
+}
+
+TEST_F(CliDiff, EqualPicturesExitWith0) {
+    const Outcome run = run_command({"diff", in_folder("a.png"), in_folder("a.png")});
+    EXPECT_EQ(run.code, 0);
+    EXPECT_NE(run.out.find("infinite"), std::string::npos) << run.out;
+}
+
+TEST_F(CliDiff, DifferentSizesAreDifferentPictures) {
+    const Outcome run = run_command({"diff", in_folder("a.png"), in_folder("small.png"), "-o", in_folder("d.png")});
+    EXPECT_EQ(run.code, 3);
+    EXPECT_NE(run.out.find("8x4 and 4x4"), std::string::npos) << run.out;
+}
+
+TEST_F(CliDiff, ThePictureMarksTheDifferencesRed) {
+    ASSERT_EQ(diff({"-o", in_folder("d.png")}).code, 3);
+    const tessera::Image picture = tessera::read_image(in_folder("d.png"));
+    const auto* first = picture.data<unsigned char>();
+    EXPECT_GT(first[0], first[1] + 50) << "the pixel that differs";
+    const auto* equal = first + 4;
+    EXPECT_EQ(equal[0], equal[1]);
+    EXPECT_EQ(equal[1], equal[2]);
+}
+
+TEST_F(CliDiff, FailuresHaveTheirCodes) {
+    const Outcome missing = run_command({"diff", in_folder("a.png"), in_folder("no.png")});
+    EXPECT_EQ(missing.code, 4);
+    EXPECT_EQ(missing.error_lines(), 1);
+    EXPECT_NE(missing.err.find("no.png"), std::string::npos) << missing.err;
+    EXPECT_EQ(diff({"--tolerance", "much"}).code, 2);
+    EXPECT_EQ(diff({"-o", in_folder("nowhere/d.png")}).code, 5);
+}
+
+TEST(JsonWriter, EscapesWhatJsonForbids) {
+    const std::string hostile =
+        std::string("a\"b\\c\n\x01\x7f") + "\xff\xc3\xa9\xed\xa0\x80" + "\xf0\x9f\x98\x80\xe2\x82";
+    tessera::cli::JsonWriter json;
+    json.begin_object().member(hostile, hostile).member("inf", std::numeric_limits<double>::infinity());
+    json.member("third", 1.0 / 3).key("list").begin_array().value(true).begin_object().end_object().end_array();
+    simdjson::dom::parser parser;
+    simdjson::dom::element parsed;
+    const std::string text = json.end_object().text();
+    ASSERT_EQ(parser.parse(text).get(parsed), simdjson::SUCCESS) << text;
+    const std::string replaced = std::string("a\"b\\c\n\x01\x7f") + "\xef\xbf\xbd\xc3\xa9" +
+                                 "\xef\xbf\xbd\xef\xbf\xbd\xef\xbf\xbd" + "\xf0\x9f\x98\x80\xef\xbf\xbd\xef\xbf\xbd";
+    EXPECT_EQ(std::string_view(parsed[replaced]), replaced);
+    EXPECT_TRUE(parsed["inf"].is_null());
+    EXPECT_EQ(double(parsed["third"]), 1.0 / 3) << "numbers read back exactly";
+    EXPECT_EQ(simdjson::dom::array(parsed["list"]).size(), 2u);
+}
+
+}  // namespace

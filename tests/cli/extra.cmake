@@ -1,0 +1,13 @@
+# The built command under test, and the checks that are scripts.
+find_package(simdjson REQUIRED)
+target_link_libraries(${target} PRIVATE simdjson::simdjson)
+if(TARGET tessera_command)
+  add_dependencies(${target} tessera_command)
+  target_compile_definitions(${target} PRIVATE TESSERA_COMMAND="$<TARGET_FILE:tessera_command>")
+  add_test(NAME golden COMMAND ${PROJECT_SOURCE_DIR}/scripts/golden $<TARGET_FILE:tessera_command>)
+  set_tests_properties(golden PROPERTIES TIMEOUT 600)
+  if(TESSERA_INSTALL AND NOT TESSERA_SANITIZE)
+    add_test(NAME install COMMAND ${PROJECT_SOURCE_DIR}/scripts/test-install ${PROJECT_BINARY_DIR})
+    set_tests_properties(install PROPERTIES TIMEOUT 600)
+  endif()
+endif()

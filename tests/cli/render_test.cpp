@@ -1,0 +1,250 @@
+// `tessera render` from end to end: exit codes, what goes to stdout and to stderr, the picture, the
+// statistics.
+#include "cli/run_command.h"
+
+#include <tessera/image.h>
+
+#include <simdjson.h>
+
+namespace {
+
+using Strings = std::vector<std::string>;
+
+Strings operator+(Strings a, const Strings& b) {
+    a.insert(a.end(), b.begin(), b.end());
+    return a;
+}
+
+std::string color_hash(const std::string& statistics) {
+    simdjson::dom::parser parser;
+    return std::string(std::string_view(parser.parse(statistics)["color_hash"]));
+}
+
+class CliRender : public CliTest {
+  protected:
+    Strings small(const std::string& name) const { return {"render", scene(name), "-s", "64x48", "--samples", "1"}; }
+    Outcome render(const Strings& more) const { return run_command(small("cornell-box.gltf") + more); }
+};
+
+TEST_F(CliRender, WritesAPngAndSaysNothing) {
+    const Outcome run = render({"-o", in_folder("a.png")});
+    EXPECT_EQ(run.code, 0);
+    EXPECT_EQ(run.out, "");
+    EXPECT_EQ(run.err, "");
+    const tessera::Image image = tessera::read_image(in_folder("a.png"));
+    EXPECT_EQ(image.width(), 64);
+    EXPECT_EQ(image.height(), 48);
+    EXPECT_EQ(folder_contents(), Strings{"a.png"});
+}
+
+TEST_F(CliRender, WritesAJpeg) {
+    ASSERT_EQ(render({"-o", in_folder("a.JPG"), "--quality", "80"}).code, 0);
+    const std::string file = read_file(in_folder("a.JPG"));
+    EXPECT_EQ(tessera::read_image_info(std::as_bytes(std::span(file))).codec, "jpeg");
+}
+
+TEST_F(CliRender, StreamsTheSamePngToStdout) {
+    ASSERT_EQ(render({"-o", in_folder("a.png")}).code, 0);
+    const Outcome run = render({"-o", "-"});
+    EXPECT_EQ(run.code, 0);
+    EXPECT_EQ(run.err, "");
+    EXPECT_TRUE(run.out == read_file(in_folder("a.png"))) << run.out.size() << " bytes";
+}
+
+TEST_F(CliRender, StatisticsAreJsonWithAllMembers) {
+    const Outcome run = render({"-o", in_folder("a.png"), "--stats", "-", "--engine", "reference-trace"});
+    ASSERT_EQ(run.code, 0) << run.err;
+    simdjson::dom::parser parser;
+    simdjson::dom::object json;
+    ASSERT_EQ(parser.parse(run.out).get(json), simdjson::SUCCESS) << run.out;
+    for (const char* key : {"triangles", "pixels_covered", "fragments_passed", "phases_ms", "frame_ms", "cpu_ms",
+                            "load_ms", "peak_rss_mb", "threads", "isa", "engine", "color_hash", "culls", "exposure",
+                            "width", "height", "samples", "version"})
+        EXPECT_EQ(json[key].error(), simdjson::SUCCESS) << key;
+    EXPECT_EQ(std::string_view(json["engine"]), "reference-trace");
+    EXPECT_EQ(std::uint64_t(json["width"]), 64u);
+    EXPECT_EQ(std::uint64_t(json["samples"]), 1u);
+    // Five walls, the lamp and two blocks of twelve.
+    EXPECT_EQ(std::uint64_t(json["triangles"]), 2u * 6 + 2 * 12);
+    EXPECT_GT(std::uint64_t(json["pixels_covered"]), 1000u);
+    EXPECT_GT(double(json["peak_rss_mb"]), 1.0);
+
+    char hash[17];
+    const tessera::Image image = tessera::read_image(in_folder("a.png"));
+    std::snprintf(hash, sizeof hash, "%016llx", static_cast<unsigned long long>(tessera::hash_pixels(image)));
+    EXPECT_EQ(std::string_view(json["color_hash"]), hash);
+}
+
+TEST_F(CliRender, TheSceneMayComeFromStdin) {
+    const std::string triangle = R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],
+        "meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],
+        "accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3","min":[0,0,0],"max":[1,1,0]}],
+        "bufferViews":[{"buffer":0,"byteLength":36}],"buffers":[{"byteLength":36,
+        "uri":"data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}]})";
+    const Outcome run = run_command({"render", "-", "-o", in_folder("a.png"), "--stats", "-", "-s", "32x32"}, triangle);
+    ASSERT_EQ(run.code, 0) << run.err;
+    simdjson::dom::parser parser;
+    EXPECT_EQ(std::uint64_t(parser.parse(run.out)["triangles"]), 1u);
+
+    const Outcome outside =
+        run_command({"render", "-", "-o", in_folder("b.png")}, read_file(scene("cornell-box.gltf")));
+    EXPECT_EQ(outside.code, 4) << "a scene from stdin may not open files";
+    EXPECT_EQ(outside.err.rfind("tessera: error: <stdin>: ", 0), 0u) << outside.err;
+}
+
+TEST_F(CliRender, ThreadsAndIsaDoNotChangeThePixels) {
+    const std::string expected = color_hash(render({"--stats", "-"}).out);
+    EXPECT_EQ(expected.size(), 16u);
+    EXPECT_EQ(color_hash(render({"--stats", "-", "--threads", "1"}).out), expected);
+    EXPECT_EQ(color_hash(render({"--stats", "-", "--threads", "3", "--isa", "scalar"}).out), expected);
+    EXPECT_NE(color_hash(render({"--stats", "-", "--camera", "corner"}).out), expected);
+}
+
+TEST_F(CliRender, CamerasByNameIndexAndPosition) {
+    const std::string corner = color_hash(render({"--stats", "-", "--camera", "corner"}).out);
+    EXPECT_EQ(color_hash(render({"--stats", "-", "--camera", "1"}).out), corner);
+    EXPECT_EQ(render({"--stats", "-", "--eye", "0,1,4", "--target", "0,1,0", "--fov", "40"}).code, 0);
+    EXPECT_EQ(render({"--stats", "-", "--eye", "0,1,4", "--up", "z"}).code, 0);
+
+    const Outcome unknown = render({"--stats", "-", "--camera", "attic"});
+    EXPECT_EQ(unknown.code, 2);
+    EXPECT_NE(unknown.err.find("'front'"), std::string::npos) << "names the cameras that there are: " << unknown.err;
+}
+
+TEST_F(CliRender, TransparentBackgroundHasAlpha) {
+    ASSERT_EQ(run_command({"render", scene("spheres.gltf"), "-o", in_folder("a.png"), "-s", "32x32", "--samples", "1",
+                           "--background", "none", "--eye", "0,1,8", "--target", "0,6,0", "--fov", "30"})
+                  .code,
+              0);
+    const tessera::Image image = tessera::read_image(in_folder("a.png"));
+    EXPECT_EQ(image.data<unsigned char>()[3], 0) << "the top left corner shows the sky";
+}
+
+TEST_F(CliRender, FB1_ColorBitsLimitTheLevels) {
+    ASSERT_EQ(render({"-o", in_folder("a.png"), "--color-bits", "3-3-2"}).code, 0);
+    const tessera::Image image = tessera::read_image(in_folder("a.png"));
+    std::array<std::vector<bool>, 3> seen{std::vector<bool>(256), std::vector<bool>(256), std::vector<bool>(256)};
+    for (std::size_t i = 0; i < image.bytes().size(); ++i)
+        if (i % 4 < 3) seen[i % 4][image.data<unsigned char>()[i]] = true;
+    const auto levels = [&](std::size_t c) { return std::count(seen[c].begin(), seen[c].end(), true); };
+    EXPECT_LE(levels(0), 8);
+    EXPECT_LE(levels(1), 8);
+    EXPECT_LE(levels(2), 4);
+    EXPECT_GT(levels(0), 2);
+}
+
+TEST_F(CliRender, UsageErrorsExitWith2AndNameTheOption) {
+    const std::string out = in_folder("a.png");
+    const std::vector<std::pair<Strings, std::string>> cases{
+        {{}, "--output"},
+        {{"-o", in_folder("a.bmp")}, "--output"},
+        {{"-o", out, "--bogus"}, "--bogus"},
+        {{"-o", out, "--frobnicate", "3"}, "--frobnicate"},
+        {{"-o", out, "--engine", "raster"}, "--engine: raster does not exist yet"},
+        {{"-o", out, "--engine", "trace"}, "--engine: trace does not exist yet"},
+        {{"-o", out, "--engine", "hybrid"}, "--engine: hybrid does not exist yet"},
+        {{"-o", out, "--engine", "fast"}, "--engine"},
+        {{"-o", out, "--size", "64"}, "--size"},
+        {{"-o", out, "--samples", "0"}, "--samples"},
+        {{"-o", out, "--samples", "4x"}, "--samples"},
+        {{"-o", out, "--eye", "1,2"}, "--eye"},
+        {{"-o", out, "--target", "1,2,3"}, "--target"},
+        {{"-o", out, "--camera", "0", "--eye", "1,2,3"}, "--camera"},
+        {{"-o", out, "--fov", "200"}, "--fov"},
+        {{"-o", out, "--time", "1.5"}, "--time"},
+        {{"-o", out, "--background", "#12345"}, "--background"},
+        {{"-o", out, "--exposure", "nan"}, "--exposure"},
+        {{"-o", out, "--tone-map", "film"}, "--tone-map"},
+        {{"-o", out, "--lighting", "dark"}, "--lighting"},
+        {{"-o", out, "--isa", "mmx"}, "mmx"},
+        {{"-o", out, "--threads", "0"}, "--threads"},
+        {{"-o", out, "--aov", "depth"}, "--aov"},
+        {{"-o", out, "--color-bits", "9-3-2"}, "--color-bits"},
+        {{"-o", out, "--timeout", "-1"}, "--timeout"},
+        {{"-o", "-", "--stats", "-"}, "--stats"},
+    };
+    for (const auto& [arguments, named] : cases) {
+        const Outcome run = render(arguments);
+        EXPECT_EQ(run.code, 2) << named;
+        EXPECT_EQ(run.out, "") << named;
+        EXPECT_EQ(run.error_lines(), 1) << run.err;
+        EXPECT_EQ(run.err.rfind("tessera: error: ", 0), 0u) << run.err;
+        EXPECT_NE(run.err.find(named), std::string::npos) << run.err;
+    }
+    EXPECT_TRUE(folder_contents().empty());
+}
+
+TEST_F(CliRender, InputErrorsExitWith4AndNameTheFile) {
+    const Outcome missing = run_command({"render", in_folder("no.gltf"), "-o", in_folder("a.png")});
+    EXPECT_EQ(missing.code, 4);
+    EXPECT_EQ(missing.error_lines(), 1);
+    EXPECT_NE(missing.err.find("no.gltf"), std::string::npos) << missing.err;
+
+    std::ofstream(in_folder("bad.gltf")) << "{\"asset\":";
+    const Outcome bad = run_command({"render", in_folder("bad.gltf"), "-o", in_folder("a.png")});
+    EXPECT_EQ(bad.code, 4);
+    EXPECT_EQ(bad.error_lines(), 1);
+    EXPECT_EQ(folder_contents(), Strings{"bad.gltf"});
+}
+
+TEST_F(CliRender, OutputErrorsExitWith5) {
+    const Outcome no_folder = render({"-o", in_folder("nowhere/a.png")});
+    EXPECT_EQ(no_folder.code, 5);
+    EXPECT_NE(no_folder.err.find("nowhere/a.png"), std::string::npos) << no_folder.err;
+    std::filesystem::create_directory(in_folder("dir.png"));
+    EXPECT_EQ(render({"-o", in_folder("dir.png")}).code, 5);
+    EXPECT_EQ(render({"-o", "/dev/full"}).code, 5);
+    EXPECT_EQ(render({"-o", in_folder("a.png"), "--stats", in_folder("nowhere/s.json")}).code, 5);
+    EXPECT_EQ(folder_contents(), Strings{"dir.png"});
+}
+
+TEST_F(CliRender, AnExistingPictureSurvivesAFailure) {
+    ASSERT_EQ(render({"-o", in_folder("a.png")}).code, 0);
+    const std::string before = read_file(in_folder("a.png"));
+    EXPECT_EQ(run_command({"render", in_folder("no.gltf"), "-o", in_folder("a.png")}).code, 4);
+    EXPECT_EQ(read_file(in_folder("a.png")), before);
+}
+
+TEST_F(CliRender, LimitsExitWith6) {
+    EXPECT_EQ(render({"-o", in_folder("a.png"), "--max-triangles", "10"}).code, 6);
+    EXPECT_EQ(render({"-o", in_folder("a.png"), "--max-pixels", "3000"}).code, 6);
+    EXPECT_EQ(render({"-o", in_folder("a.png"), "--max-memory", "1K"}).code, 6);
+    const Outcome late = run_command({"render", scene("spheres.gltf"), "-o", in_folder("a.png"), "-s", "4096x4096",
+                                      "--engine", "reference-trace", "--samples", "64", "--timeout", "0.2"});
+    EXPECT_EQ(late.code, 6);
+    EXPECT_EQ(late.error_lines(), 1) << late.err;
+    EXPECT_NE(late.err.find("--timeout"), std::string::npos) << late.err;
+    EXPECT_TRUE(folder_contents().empty());
+}
+
+TEST_F(CliRender, AClosedPipeIsAnOutputErrorNotASignal) {
+    const std::string line = std::string("'") + kCommand + "' render '" + scene("cornell-box.gltf") +
+                             "' -s 64x48 --samples 1 -o - 2>'" + in_folder("err") + "'; echo $? >'" +
+                             in_folder("code") + "'";
+    // The reader ends at once, before anything is written to it.
+    ASSERT_EQ(std::system(("( sleep 0.3; " + line + " ) | true").c_str()), 0);
+    for (int i = 0; i < 200 && read_file(in_folder("code")).empty(); ++i) ::usleep(50'000);
+    EXPECT_EQ(read_file(in_folder("code")), "5\n") << read_file(in_folder("err"));
+}
+
+TEST_F(CliRender, AWrongIsaInTheEnvironmentIsRefusedByName) {
+    const Outcome run =
+        run_command(small("cornell-box.gltf") + Strings{"-o", in_folder("a.png")}, "", {"TESSERA_ISA=mmx"});
+    EXPECT_EQ(run.code, 2);
+    EXPECT_NE(run.err.find("mmx"), std::string::npos) << run.err;
+}
+
+TEST_F(CliRender, NothingToDrawIsABackgroundAWarningAndNoError) {
+    const std::string empty = R"({"asset":{"version":"2.0"}})";
+    const Outcome run =
+        run_command({"render", "-", "-o", in_folder("a.png"), "-s", "8x8", "--background", "#ff8000"}, empty);
+    EXPECT_EQ(run.code, 0);
+    EXPECT_EQ(run.err.rfind("tessera: warning: ", 0), 0u) << run.err;
+    const tessera::Image image = tessera::read_image(in_folder("a.png"));
+    EXPECT_EQ(image.data<unsigned char>()[0], 255);
+    EXPECT_EQ(image.data<unsigned char>()[1], 128);
+    EXPECT_EQ(image.data<unsigned char>()[2], 0);
+    EXPECT_EQ(run_command({"render", "-", "-o", in_folder("b.png"), "-s", "8x8", "--quiet"}, empty).err, "");
+}
+
+}  // namespace
