@@ -5,6 +5,7 @@
 
 #include <tessera/export.h>
 #include <tessera/image.h>
+#include <tessera/isa.h>
 #include <tessera/scene.h>
 
 #include <cstdint>
@@ -21,15 +22,6 @@ enum class Engine : std::uint8_t {
     kReferenceTrace,   // ray caster with hard shadows, scalar, single-threaded
 };
 TESSERA_API const char* name(Engine engine);
-
-// Instruction sets of the kernels. kAuto: TESSERA_ISA of the environment if set, else the best that
-// the processor has.
-enum class Isa : std::uint8_t { kAuto, kScalar, kSse4, kAvx2, kAvx512 };
-TESSERA_API const char* name(Isa isa);
-// kUsage when the name is unknown or the processor lacks the instruction set.
-TESSERA_API Isa parse_isa(const std::string& name);
-// What kAuto stands for here; throws kUsage when TESSERA_ISA names none or one that is missing.
-TESSERA_API Isa resolve_isa(Isa isa);
 
 // Where the camera stands. Exactly one way is used: `camera` (an index into Scene::cameras, at the
 // first node that carries it), else `eye`/`target`, else the scene's first camera, else the visible
