@@ -1,0 +1,82 @@
+// The entry points: which format is it, and whose reader is called.
+#include <tessera/load.h>
+
+#include "load/context.h"
+#include "load/file.h"
+#include "load/glb.h"
+#include "load/gltf.h"
+
+#include <new>
+#include <stdexcept>
+
+namespace tessera {
+namespace {
+
+// glTF's JSON text begins with "{" after a byte order mark and white space.
+bool looks_like_json(std::string_view text) {
+    if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);
+    const std::size_t first = text.find_first_not_of(" \t\r\n");
+    return first != std::string_view::npos && text[first] == '{';
+}
+
+bool has_extension(std::string_view name, std::string_view extension) {
+    if (name.size() < extension.size()) return false;
+    name.remove_prefix(name.size() - extension.size());
+    for (std::size_t i = 0; i < extension.size(); ++i) {
+        const char c = name[i] >= 'A' && name[i] <= 'Z' ? static_cast<char>(name[i] - 'A' + 'a') : name[i];
+        if (c != extension[i]) return false;
+    }
+    return true;
+}
+
+// By content; where that says nothing, the extension decides what the error is about.
+Scene read_any(LoadContext& context, std::span<const std::byte> file, const std::string& folder) {
+    const std::string_view text(reinterpret_cast<const char*>(file.data()), file.size());
+    if (is_glb(file)) {
+        const GlbChunks chunks = split_glb(context, file);
+        return read_gltf(context, chunks.json, chunks.binary, folder);
+    }
+    if (looks_like_json(text)) return read_gltf(context, text, std::nullopt, folder);
+    if (file.empty()) context.fail("the file is empty");
+    if (has_extension(context.file(), ".gltf")) context.fail("not a glTF file: it does not begin with \"{\"");
+    if (has_extension(context.file(), ".glb")) context.fail("not a GLB file: it does not begin with \"glTF\"");
+    context.fail("not a scene format that Tessera reads (glTF 2.0: .gltf, .glb)");
+}
+
+// Memory that runs out below the configured limit is a limit too.
+template <class F>
+Scene guarded(const std::string& name, F&& load) {
+    try {
+        return load();
+    } catch (const std::bad_alloc&) {
+        throw Error(ErrorCode::kLimit, "out of memory", name);
+    } catch (const std::length_error&) {
+        throw Error(ErrorCode::kLimit, "out of memory", name);
+    }
+}
+
+std::string folder_of(const std::string& path) {
+    const std::size_t slash = path.rfind('/');
+    if (slash == std::string::npos) return ".";
+    return slash == 0 ? "/" : path.substr(0, slash);
+}
+
+}  // namespace
+
+Scene load_scene(const std::string& path, const LoadOptions& options) {
+    return guarded(path, [&] {
+        LoadContext context(path, options);
+        const Bytes file = read_whole_file(context, path);
+        return read_any(context, file.span(), folder_of(path));
+    });
+}
+
+Scene load_scene_from_memory(std::span<const std::byte> file, const std::string& base_folder,
+                             const LoadOptions& options, const std::string& name) {
+    return guarded(name, [&] {
+        LoadContext context(name, options);
+        return read_any(context, file, base_folder);
+    });
+}
+
+}  // namespace tessera

@@ -1,0 +1,26 @@
+// URIs of a scene's files. What a URI names must lie below the scene's folder, whatever it says and
+// whatever links are there; only data: URIs may have a scheme.
+#pragma once
+
+#include "load/context.h"
+#include "load/file.h"
+
+#include <string>
+#include <string_view>
+
+namespace tessera {
+
+bool is_data_uri(std::string_view uri);
+// The bytes of a data: URI (base64 or percent-encoded), charged to the context.
+Bytes decode_data_uri(LoadContext& context, std::string_view uri, const std::string& place);
+
+// Replaces %XX; throws kInput for a broken escape.
+std::string percent_decode(const LoadContext& context, std::string_view text, const std::string& place);
+
+// Opens the regular file that a relative URI names below `folder` ("": none may be used). Throws
+// kInput for anything that leaves the folder: an absolute path, "..", a scheme, a symbolic link that
+// points outside; and for backslashes, zero characters and whatever is not a regular file.
+FileHandle open_below(const LoadContext& context, const std::string& folder, std::string_view uri,
+                      const std::string& place);
+
+}  // namespace tessera
