@@ -1,6 +1,7 @@
 // Everything of Tessera's public API, and its version.
 #pragma once
 
+#include <tessera/clip.h>
 #include <tessera/error.h>
 #include <tessera/image.h>
 #include <tessera/load.h>

@@ -1,0 +1,11 @@
+# The libraries that Tessera is built on; docs/dependencies.md says why each was taken.
+find_package(PkgConfig REQUIRED)
+find_package(PNG REQUIRED)
+find_package(JPEG REQUIRED)
+find_package(glm REQUIRED)
+find_package(simdjson REQUIRED)
+find_package(Threads REQUIRED)
+pkg_check_modules(LIBDEFLATE REQUIRED IMPORTED_TARGET libdeflate)
+if(TESSERA_THREADS STREQUAL "tbb")
+  find_package(TBB REQUIRED)
+endif()

@@ -1,0 +1,61 @@
+// A plain bounding volume hierarchy over the triangles of a frame in camera space, double precision:
+// boxes split at the median of their longest axis, leaves of a few triangles. And the intersection
+// test that both it and brute force use.
+#pragma once
+
+#include "geometry/frame.h"
+
+#include <glm/vec3.hpp>
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <vector>
+
+namespace tessera {
+
+struct CastRay {
+    glm::dvec3 origin, direction;  // camera space; any length above zero
+};
+
+struct RayHit {
+    std::uint32_t triangle;  // number in the frame, 0-based
+    double t;                // in units of the direction
+    double b[3];             // barycentric coordinates
+};
+
+// The triangle (v0, v1, v2) and a ray, from either side, edges inclusive. The sign tests are triple
+// products of the ray with each edge, which two triangles that share an edge compute as exact
+// opposites: no ray slips between them (Kensler and Shirley 2006, "Optimizing ray-triangle
+// intersection via automated search"). Empty for a miss, behind the origin, degenerate or edge-on.
+std::optional<RayHit> intersect(const CastRay& ray, const glm::dvec3& v0, const glm::dvec3& v1, const glm::dvec3& v2);
+
+class Bvh {
+  public:
+    // `brute_force` keeps one leaf of everything: O(rays * triangles), for comparison.
+    explicit Bvh(const Frame& frame, bool brute_force = false);
+
+    // Calls `visit` for the triangles that the ray hits with t in [t_min, t_max], in no special order.
+    // It returns the new t_max, by which farther triangles are skipped; below t_min ends the search.
+    void traverse(const CastRay& ray, double t_min, double t_max,
+                  const std::function<double(const RayHit&, double t_max)>& visit) const;
+
+    std::size_t triangle_count() const { return order_.size(); }
+
+  private:
+    struct Box {
+        glm::dvec3 min, max;
+    };
+    struct Node {
+        Box box;
+        std::uint32_t first, count;  // leaf: range of order_; inner: count 0, children first and first + 1
+    };
+    Box box_of(std::uint32_t first, std::uint32_t count) const;
+    void build();
+
+    std::vector<glm::dvec3> vertices_;  // three per triangle, by number
+    std::vector<std::uint32_t> order_;
+    std::vector<Node> nodes_;
+};
+
+}  // namespace tessera

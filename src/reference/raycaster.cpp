@@ -1,0 +1,86 @@
+#include "reference/raycaster.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace tessera {
+
+CastRay primary_ray(const ProjectionView& projection, SamplePosition at) {
+    const Vec2T<float> ndc = sample_ndc<float>(at.x, at.y, projection.width, projection.height);
+    const double x = static_cast<double>(ndc.x) / projection.scale_x,
+                 y = static_cast<double>(ndc.y) / projection.scale_y;
+    if (projection.orthographic) return {{x, y, 0}, {0, 0, -1}};
+    return {{0, 0, 0}, {x, y, -1}};
+}
+
+Visibility cast_rays(const Frame& frame, const Bvh& bvh, const ShadingContext& context, SamplePosition offset,
+                     const RunControl& control) {
+    Visibility out;
+    out.width = static_cast<int>(frame.projection.width);
+    out.height = static_cast<int>(frame.projection.height);
+    const auto pixels = static_cast<std::size_t>(out.width) * static_cast<std::size_t>(out.height);
+    out.depth.assign(pixels, 0.0f);
+    out.triangle.assign(pixels, 0u);
+    out.counters.triangles = frame.triangle_count;
+    SurfaceSampler sampler(frame, context);
+
+    for (int y = 0; y < out.height; ++y) {
+        control.checkpoint(static_cast<double>(y) / out.height);
+        for (int x = 0; x < out.width; ++x) {
+            const auto pixel =
+                static_cast<std::size_t>(y) * static_cast<std::size_t>(out.width) + static_cast<std::size_t>(x);
+            const SamplePosition at{256 * x + offset.x, 256 * y + offset.y};
+            float& nearest = out.depth[pixel];
+            std::uint32_t& triangle = out.triangle[pixel];
+            const auto visit = [&](const RayHit& hit, double t_max) {
+                const TriangleSetup& t = sampler.setup(hit.triangle);
+                const MaterialView& material = sampler.material(hit.triangle);
+                if (!t.visible() || (!t.front(sampler.instance(hit.triangle)) && !material.double_sided)) return t_max;
+                // Which one is in front is decided by the canonical depth, as everywhere.
+                const float z = t.depth.at(at.x, at.y);
+                if (!(z > 0.0f) || z < nearest) return t_max;
+                if (z == nearest && triangle != 0 && triangle <= hit.triangle + 1) return t_max;
+                if (material.alpha_mode == AlphaMode::kBlend) {
+                    add_fragment(out, {static_cast<std::uint32_t>(pixel), hit.triangle, z}, control);
+                    return t_max;
+                }
+                if (material.alpha_mode == AlphaMode::kMask && sampler.alpha(hit.triangle, at) < material.alpha_cutoff)
+                    return t_max;
+                nearest = z;
+                triangle = hit.triangle + 1;
+                // A little farther than the hit, for surfaces that canonical depth may put in front.
+                return std::min(t_max, hit.t * (1 + 1e-6));
+            };
+            bvh.traverse(primary_ray(frame.projection, at), static_cast<double>(frame.projection.near),
+                         std::numeric_limits<double>::max(), visit);
+            if (triangle != 0) ++out.counters.fragments_passed;
+        }
+    }
+    sort_transparent(out);
+    return out;
+}
+
+float ShadowCaster::visible(const SurfacePoint<float>& point, std::uint32_t triangle, const LightSample<float>& light) {
+    const Vec3T<float>& p = point.position;
+    const Vec3T<float>& l = light.to_light;
+    // Start off the surface, on the light's side of it, by a step in proportion to the coordinates'
+    // size, in which the rounding of the position is measured.
+    const float scale = std::max({std::fabs(p.x), std::fabs(p.y), std::fabs(p.z)});
+    const float side = dot(point.geometric_normal, l) >= 0.0f ? 1.0f : -1.0f;
+    const Vec3T<float> start = p + point.geometric_normal * (side * 2e-5f * scale);
+    const CastRay ray{{start.x, start.y, start.z}, {l.x, l.y, l.z}};
+    bool blocked = false;
+    bvh_.traverse(ray, 0.0, static_cast<double>(light.distance) * (1 - 1e-5), [&](const RayHit& hit, double t_max) {
+        if (hit.triangle == triangle) return t_max;
+        const MaterialView& material = sampler_.material(hit.triangle);
+        if (material.alpha_mode == AlphaMode::kBlend) return t_max;
+        if (material.alpha_mode == AlphaMode::kMask && sampler_.alpha(hit.triangle, hit.b) < material.alpha_cutoff)
+            return t_max;
+        blocked = true;
+        return -1.0;
+    });
+    return blocked ? 0.0f : 1.0f;
+}
+
+}  // namespace tessera

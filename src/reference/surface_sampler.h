@@ -1,0 +1,43 @@
+// The surface seen at a picture position: fetches a triangle's corners and applies the surface
+// function. One for each engine run; not shared between threads (it remembers the last triangle).
+#pragma once
+
+#include "geometry/frame.h"
+#include "shading/shade.h"
+#include "shading/triangle_setup.h"
+
+namespace tessera {
+
+class SurfaceSampler {
+  public:
+    // Both must outlive the sampler.
+    SurfaceSampler(const Frame& frame, const ShadingContext& context) : frame_(frame), context_(context) {}
+
+    // `triangle` is a number in the frame (0-based); `at` a position inside its picture.
+    SurfacePoint<float> point(std::uint32_t triangle, SamplePosition at);
+    // Canonical depth (reversed) of the triangle at a position.
+    float depth(std::uint32_t triangle, SamplePosition at);
+    // Alpha of the material there, before the alpha mode looks at it.
+    float alpha(std::uint32_t triangle, SamplePosition at);
+    // The same for a ray's hit anywhere on the triangle, from the texture's finest level.
+    float alpha(std::uint32_t triangle, const double (&barycentric)[3]);
+
+    const TriangleSetup& setup(std::uint32_t triangle);
+    const InstanceView& instance(std::uint32_t triangle);
+    const MaterialView& material(std::uint32_t triangle) { return context_.materials[instance(triangle).material]; }
+    const ShadingContext& context() const { return context_; }
+
+  private:
+    void select(std::uint32_t triangle);
+    SurfacePoint<float> point(std::uint32_t triangle, const Barycentrics<float>& b);
+
+    const Frame& frame_;
+    const ShadingContext& context_;
+    static constexpr std::uint32_t kNothing = 0xffffffffu;
+    std::uint32_t selected_ = kNothing, corners_of_ = kNothing;
+    const InstanceView* instance_ = nullptr;
+    TriangleSetup setup_;
+    Corner<float> corners_[3];
+};
+
+}  // namespace tessera
