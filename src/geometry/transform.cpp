@@ -92,7 +92,9 @@ Mat4 compose(Vec3 translation, Quat rotation, Vec3 scale) {
 std::optional<Mat4> inverse(const Mat4& m) {
     const std::optional<glm::dmat4> inverted = inverse_matrix(to_dmat4(m));
     if (!inverted) return std::nullopt;
-    return to_mat4(*inverted);
+    const Mat4 result = to_mat4(*inverted);
+    if (!is_finite(to_dmat4(result))) return std::nullopt;  // beyond the range of float
+    return result;
 }
 
 Mat4 frame_to_parent(Vec3 u, Vec3 v, Vec3 e, Vec3 origin) {
