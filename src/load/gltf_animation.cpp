@@ -2,12 +2,36 @@
 #include "load/gltf_accessor.h"
 #include "load/gltf_parts.h"
 
+#include <algorithm>
+
 namespace tessera {
 namespace {
 
 Accessor referred(GltfDocument& document, const Json& json) {
     return open_accessor(document,
                          static_cast<std::size_t>(json.reference(document.size(GltfArray::kAccessors), "accessor")));
+}
+
+// Keys must be in order. Files whose keys repeat a time exist; of such keys the first is kept.
+void drop_late_keys(LoadContext& context, const Json& json, AnimationSampler& sampler) {
+    std::vector<float>&times = sampler.times, &values = sampler.values;
+    const std::size_t per_key = values.size() / times.size();
+    std::size_t kept = 1;
+    for (std::size_t k = 1; k < times.size(); ++k) {
+        if (!(times[k] > times[kept - 1])) continue;
+        if (kept != k && (k + 1) * per_key <= values.size()) {
+            const auto key = [&](std::size_t i) { return values.begin() + static_cast<std::ptrdiff_t>(i * per_key); };
+            std::copy(key(k), key(k + 1), key(kept));
+        }
+        times[kept++] = times[k];
+    }
+    if (kept == times.size()) return;
+    if (values.size() != times.size() * per_key)
+        json.fail(std::to_string(values.size()) + " values for " + std::to_string(times.size()) + " keys");
+    context.warn(json.place() + ": " + std::to_string(times.size() - kept) +
+                 " keys are ignored, they are not later than the ones before");
+    times.resize(kept);
+    values.resize(kept * per_key);
 }
 
 AnimationSampler read_sampler(GltfDocument& document, const Json& json) {
@@ -27,6 +51,7 @@ AnimationSampler read_sampler(GltfDocument& document, const Json& json) {
         sampler.interpolation = Interpolation::kCubicSpline;
     else if (mode != "LINEAR")
         json.at("interpolation").fail("there is no interpolation " + json.at("interpolation").raw());
+    drop_late_keys(document.context(), json, sampler);
     return sampler;
 }
 

@@ -4,6 +4,9 @@
 namespace tessera {
 namespace {
 
+constexpr float kHalfPi = 1.57079633f;
+constexpr float kWidest = 3.12f;  // just below pi: a wider view shows nothing but its centre
+
 Camera read_camera(GltfDocument& document, const Json& json) {
     Camera camera;
     document.note_extensions(json);
@@ -13,6 +16,10 @@ Camera read_camera(GltfDocument& document, const Json& json) {
     if (type.string() == "perspective") {
         const Json lens = json.at("perspective");
         camera.yfov = lens.at("yfov").number();
+        if (camera.yfov >= kWidest) {
+            document.context().warn(lens.place() + ": a field of view of pi or more is taken as a little less");
+            camera.yfov = kWidest;
+        }
         camera.znear = lens.at("znear").number();
         if (const std::optional<Json> aspect = lens.find("aspectRatio")) camera.aspect = aspect->number();
         if (const std::optional<Json> zfar = lens.find("zfar")) camera.zfar = zfar->number();
@@ -28,8 +35,6 @@ Camera read_camera(GltfDocument& document, const Json& json) {
     }
     return camera;
 }
-
-constexpr float kHalfPi = 1.57079633f;
 
 void read_spot(LoadContext& context, const Json& json, Light& light) {
     const std::optional<Json> spot = json.find("spot");

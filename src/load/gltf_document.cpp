@@ -42,6 +42,7 @@ GltfDocument::GltfDocument(LoadContext& context, std::string_view json,
     for (std::size_t i = 0; i < kArrayNames.size(); ++i)
         if (const std::optional<Json> array = root().find(kArrayNames[i])) arrays_[i] = array->elements();
     buffers_.resize(size(GltfArray::kBuffers));
+    check_references();
 }
 
 void GltfDocument::parse(std::string_view json) {
@@ -57,9 +58,19 @@ void GltfDocument::parse(std::string_view json) {
 void GltfDocument::check_asset() const {
     const Json version = root().at("asset").at("version");
     if (!version.string().starts_with("2.")) version.fail("glTF version " + version.raw() + "; version 2 is read");
-    // A file that needs a later minor version says so in minVersion.
-    if (const std::optional<Json> least = root().at("asset").find("minVersion"))
-        if (least->string() != "2.0") least->fail("needs glTF " + least->raw() + "; version 2.0 is read");
+    const std::optional<Json> least = root().at("asset").find("minVersion");
+    if (!least || least->string() == "2.0") return;
+    if (!least->string().starts_with("2.")) least->fail("needs glTF " + least->raw() + "; version 2 is read");
+    context_.warn("the file asks for glTF " + least->raw() + ", it is read as 2.0");
+}
+
+// What nothing uses is not opened, but it must not refer to nothing.
+void GltfDocument::check_references() const {
+    each(GltfArray::kBufferViews,
+         [&](const Json& view, std::size_t) { view.at("buffer").reference(size(GltfArray::kBuffers), "buffer"); });
+    each(GltfArray::kAccessors, [&](const Json& accessor, std::size_t) {
+        accessor.reference_or_none("bufferView", size(GltfArray::kBufferViews), "buffer view");
+    });
 }
 
 Json GltfDocument::item(GltfArray array, std::size_t index) const {

@@ -68,6 +68,7 @@ class GltfDocument {
   private:
     void parse(std::string_view json);
     void check_asset() const;
+    void check_references() const;
     std::span<const std::byte> buffer(std::size_t index);
 
     LoadContext& context_;

@@ -1,6 +1,8 @@
 // Nodes, skins and scenes.
 #include "scene/check.h"
 
+#include <algorithm>
+
 namespace tessera {
 namespace {
 
@@ -24,20 +26,33 @@ std::vector<int> parents_of(const Scene& scene) {
     return parents;
 }
 
+// Where each node stands in a depth-first walk of the forest: a node's descendants are those with
+// number .. end - 1.
+struct Interval {
+    std::size_t number = Place::kNoIndex, end = 0;
+};
+
 // With at most one parent each, the nodes that no walk from a root reaches lie on cycles.
-void check_no_cycle(const Scene& scene, const std::vector<int>& parents) {
-    std::vector<char> reached(scene.nodes.size(), 0);
-    std::vector<int> stack;
+std::vector<Interval> number_nodes(const Scene& scene, const std::vector<int>& parents) {
+    std::vector<Interval> intervals(scene.nodes.size());
+    std::vector<std::size_t> stack, order;
     for (std::size_t i = 0; i < parents.size(); ++i)
-        if (parents[i] == kNone) stack.push_back(static_cast<int>(i));
+        if (parents[i] == kNone) stack.push_back(i);
     while (!stack.empty()) {
-        const auto node = static_cast<std::size_t>(stack.back());
+        const std::size_t node = stack.back();
         stack.pop_back();
-        reached[node] = 1;
-        for (const int child : scene.nodes[node].children) stack.push_back(child);
+        intervals[node] = {order.size(), order.size() + 1};
+        order.push_back(node);
+        for (const int child : scene.nodes[node].children) stack.push_back(static_cast<std::size_t>(child));
     }
-    for (std::size_t i = 0; i < reached.size(); ++i)
-        if (!reached[i]) Place{nullptr, "nodes", i}.fail("the node is its own ancestor");
+    for (std::size_t i = 0; i < intervals.size(); ++i)
+        if (intervals[i].number == Place::kNoIndex) Place{nullptr, "nodes", i}.fail("the node is its own ancestor");
+    for (auto node = order.rbegin(); node != order.rend(); ++node) {
+        if (parents[*node] == kNone) continue;
+        Interval& parent = intervals[static_cast<std::size_t>(parents[*node])];
+        parent.end = std::max(parent.end, intervals[*node].end);
+    }
+    return intervals;
 }
 
 void check_node(const Scene& scene, const Node& node, const Place& place) {
@@ -70,22 +85,21 @@ void check_skins(const Scene& scene) {
     }
 }
 
-void check_roots(const Scene& scene, const std::vector<int>& parents) {
-    std::vector<std::size_t> listed_by(scene.nodes.size(), Place::kNoIndex);
+// A root may have a parent (which the scene then does not draw), but no scene may list a node twice,
+// nor a node and one of its descendants.
+void check_roots(const Scene& scene, const std::vector<Interval>& intervals) {
     for (std::size_t i = 0; i < scene.scenes.size(); ++i) {
         const Place place{nullptr, "scenes", i};
-        for (std::size_t r = 0; r < scene.scenes[i].nodes.size(); ++r) {
-            const int root = scene.scenes[i].nodes[r];
-            const Place link = place.child("nodes", r);
-            if (root < 0 || static_cast<std::size_t>(root) >= scene.nodes.size())
-                link.fail("there is no node " + std::to_string(root));
-            const auto node = static_cast<std::size_t>(root);
-            if (parents[node] != kNone)
-                link.fail("node " + std::to_string(root) + " is no root, its parent is " +
-                          std::to_string(parents[node]));
-            if (listed_by[node] == i) link.fail("node " + std::to_string(root) + " is listed twice");
-            listed_by[node] = i;
-        }
+        const std::vector<int>& roots = scene.scenes[i].nodes;
+        for (std::size_t r = 0; r < roots.size(); ++r)
+            if (roots[r] < 0 || static_cast<std::size_t>(roots[r]) >= scene.nodes.size())
+                place.child("nodes", r).fail("there is no node " + std::to_string(roots[r]));
+        std::vector<int> sorted = roots;
+        const auto interval = [&](int root) { return intervals[static_cast<std::size_t>(root)]; };
+        std::sort(sorted.begin(), sorted.end(), [&](int a, int b) { return interval(a).number < interval(b).number; });
+        for (std::size_t r = 1; r < sorted.size(); ++r)
+            if (interval(sorted[r]).number < interval(sorted[r - 1]).end)
+                place.child("nodes").fail("node " + std::to_string(sorted[r]) + " would be drawn twice");
     }
     // A scene without any SceneRoots may keep the default, 0: nothing is drawn.
     if (!scene.scenes.empty() || scene.active_scene != 0)
@@ -96,10 +110,10 @@ void check_roots(const Scene& scene, const std::vector<int>& parents) {
 
 void check_hierarchy(const Scene& scene) {
     const std::vector<int> parents = parents_of(scene);
-    check_no_cycle(scene, parents);
+    const std::vector<Interval> intervals = number_nodes(scene, parents);
     for (std::size_t i = 0; i < scene.nodes.size(); ++i) check_node(scene, scene.nodes[i], Place{nullptr, "nodes", i});
     check_skins(scene);
-    check_roots(scene, parents);
+    check_roots(scene, intervals);
 }
 
 }  // namespace tessera
