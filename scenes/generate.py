@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Makes the scenes of this folder: `scenes/generate.py [FOLDER]` (default: the folder it lies in).
+"""Makes the scenes of this folder: `scenes/generate.py` (or `generate.py --check`: are they as made?).
 
 Each function below is one scene. Light is in lux (directional) and candela (point, spot); the
 intensities are those of a bright room, so a camera with automatic exposure shows them well.
@@ -8,8 +8,10 @@ intensities are those of a bright room, so a camera with automatic exposure show
 import math
 import pathlib
 import sys
+import tempfile
 
-from gltf_builder import Document, about, box, cylinder, moved, quad, sphere, write_png
+sys.dont_write_bytecode = True  # the scenes' folder holds scenes
+from gltf_builder import Document, about, box, cylinder, moved, pixels_of, quad, sphere, write_png
 
 PHONG = "TESSERA_materials_phong"
 UNLIT = "KHR_materials_unlit"
@@ -278,12 +280,33 @@ SCENES = {"cornell-box": cornell_box, "spheres": spheres, "lights": lights, "mat
           "hierarchy": hierarchy, "transparency": transparency}
 
 
-def main():
-    folder = pathlib.Path(sys.argv[1]) if len(sys.argv) > 1 else pathlib.Path(__file__).resolve().parent
-    folder.mkdir(parents=True, exist_ok=True)
+def make_all(folder):
     textures(folder)
     for stem, make in SCENES.items():
         make().write(folder, stem)
+
+
+def check(folder):
+    """Names the files that differ from what would be made; pictures are compared by their pixels."""
+    different = []
+    with tempfile.TemporaryDirectory() as fresh:
+        make_all(pathlib.Path(fresh))
+        for made in sorted(pathlib.Path(fresh).iterdir()):
+            old = folder / made.name
+            read = pixels_of if made.suffix == ".png" else pathlib.Path.read_bytes
+            if not old.exists() or read(old) != read(made):
+                different.append(made.name)
+    return different
+
+
+def main():
+    folder = pathlib.Path(__file__).resolve().parent
+    if sys.argv[1:] == ["--check"]:
+        different = check(folder)
+        sys.exit("not as generate.py makes them: " + ", ".join(different) if different else 0)
+    if sys.argv[1:]:
+        sys.exit("usage: generate.py [--check]")
+    make_all(folder)
 
 
 if __name__ == "__main__":

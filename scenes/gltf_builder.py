@@ -52,6 +52,14 @@ def write_png(path, width, height, pixel):
         f.write(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", header) + chunk(b"IDAT", zlib.compress(raw, 9)) + chunk(b"IEND", b""))
 
 
+def pixels_of(path):
+    """The uncompressed rows of a PNG that write_png() wrote."""
+    data = path.read_bytes()
+    start = data.index(b"IDAT")
+    length = struct.unpack(">I", data[start - 4:start])[0]
+    return data[:start - 4] + zlib.decompress(data[start + 4:start + 4 + length])
+
+
 # --- vectors and rotations -----------------------------------------------------------------------
 
 

@@ -1,6 +1,10 @@
 # The built command under test, and the checks that are scripts.
 find_package(simdjson REQUIRED)
 target_link_libraries(${target} PRIVATE simdjson::simdjson)
+find_package(Python3 COMPONENTS Interpreter)
+if(Python3_FOUND)
+  add_test(NAME scenes COMMAND ${Python3_EXECUTABLE} ${PROJECT_SOURCE_DIR}/scenes/generate.py --check)
+endif()
 if(TARGET tessera_command)
   add_dependencies(${target} tessera_command)
   target_compile_definitions(${target} PRIVATE TESSERA_COMMAND="$<TARGET_FILE:tessera_command>")
