@@ -5,6 +5,7 @@
 #pragma once
 
 #include <tessera/export.h>
+#include <tessera/shading_model.h>
 #include <tessera/types.h>
 
 #include <cstddef>
@@ -53,9 +54,6 @@ class TESSERA_API Image {
     PixelFormat format_ = PixelFormat::kRgba8;
     std::vector<std::byte> data_;
 };
-
-// From linear light to the display: Khronos PBR Neutral, or a curve like ACES.
-enum class ToneMap : std::uint8_t { kNone, kNeutral, kAces };
 
 // --- codecs ---------------------------------------------------------------------------------
 

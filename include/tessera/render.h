@@ -80,8 +80,8 @@ struct RenderStats {
 
 struct RenderResult {
     Image color;      // kRgba8, display-ready, straight alpha
-    Image linear;     // kRgba32f, scene radiance before exposure, premultiplied alpha
-    Image depth;      // kF32, reversed: 1 near, 0 far
+    Image linear;     // kRgba32f, scene radiance before exposure, premultiplied alpha, no background
+    Image depth;      // kF32, metres along the view axis; infinite where nothing was hit
     Image primitive;  // kU32, 1 + number of the triangle in submission order; 0: none
     RenderStats stats;
     std::vector<std::string> warnings;

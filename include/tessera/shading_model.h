@@ -1,5 +1,5 @@
-// The choices that a material and its textures are made of, as plain enumerations: the public scene
-// and the shading kernels read the same ones.
+// The choices that materials, textures, lights and the film are made of, as plain enumerations: the
+// public API and the shading kernels read the same ones.
 #pragma once
 
 #include <cstddef>
@@ -28,7 +28,10 @@ enum class Filter : std::uint8_t { kNearest, kLinear };
 // How a texture is filtered when it shrinks: kNone takes level 0 only.
 enum class MipFilter : std::uint8_t { kNone, kNearest, kLinear };
 
-// No reference. (Declared after MipFilter, whose enumerator of this name would shadow it.)
+// From exposed radiance to display values: cut off, Khronos PBR Neutral, or like ACES.
+enum class ToneMap : std::uint8_t { kNone, kNeutral, kAces };
+
+// No reference. (Declared after the enumerations whose enumerator of this name would shadow it.)
 inline constexpr int kNone = -1;
 
 }  // namespace tessera

@@ -83,6 +83,7 @@ const InstanceView& Frame::instance_of(std::uint32_t number) const {
 Frame make_frame(const Scene& scene, const View& view, int width, int height) {
     const NodeTransforms nodes = node_transforms(scene);
     Frame frame;
+    std::map<const Primitive*, std::vector<Vec3>> used;  // of each primitive, for its many instances
     const PlacedCamera camera =
         choose_camera(scene, nodes, view, static_cast<double>(width) / height, [&](const PointVisitor& visit) {
             for (const int node : nodes.order) {
@@ -90,8 +91,11 @@ Frame make_frame(const Scene& scene, const View& view, int width, int height) {
                 if (mesh == kNone) continue;
                 const glm::dmat4& world = nodes.world[static_cast<std::size_t>(node)];
                 for (const Primitive& p : scene.meshes[static_cast<std::size_t>(mesh)].primitives)
-                    if (is_drawn(p.mode))
-                        for (const Vec3& v : used_positions(p)) visit(transform_point(world, to_dvec3(v)));
+                    if (is_drawn(p.mode)) {
+                        std::vector<Vec3>& points = used[&p];
+                        if (points.empty()) points = used_positions(p);
+                        for (const Vec3& v : points) visit(transform_point(world, to_dvec3(v)));
+                    }
             }
         });
     frame.camera_to_world = camera.camera_to_world;

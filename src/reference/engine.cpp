@@ -1,0 +1,48 @@
+#include "reference/engine.h"
+
+namespace tessera {
+namespace {
+
+// Below this many triangles a hierarchy is not worth its building.
+constexpr std::uint32_t kBruteForce = 32;
+
+SamplePosition position(const Visibility& v, std::size_t pixel, SamplePosition offset) {
+    const auto width = static_cast<std::size_t>(v.width);
+    return {256 * static_cast<std::int32_t>(pixel % width) + offset.x,
+            256 * static_cast<std::int32_t>(pixel / width) + offset.y};
+}
+
+}  // namespace
+
+ReferenceEngine::ReferenceEngine(const Frame& frame, const ShadingContext& context, bool tracing, bool shadows)
+    : frame_(frame), context_(context), sampler_(frame, context) {
+    if (tracing) bvh_ = std::make_unique<Bvh>(frame, frame.triangle_count <= kBruteForce);
+    if (tracing && shadows) shadows_ = std::make_unique<ShadowCaster>(frame, *bvh_, context);
+}
+
+Visibility ReferenceEngine::see(SamplePosition offset, const RunControl& control) const {
+    return bvh_ ? cast_rays(frame_, *bvh_, context_, offset, control) : rasterize(frame_, context_, offset, control);
+}
+
+ShadedPoint<float> ReferenceEngine::shade_triangle(std::uint32_t triangle, SamplePosition at) {
+    const SurfacePoint<float> point = sampler_.point(triangle, at);
+    return shade(context_, sampler_.material(triangle), point, [&](int, const LightSample<float>& light) {
+        return shadows_ ? shadows_->visible(point, triangle, light) : 1.0f;
+    });
+}
+
+SampleColor ReferenceEngine::shade_sample(const Visibility& visibility, std::size_t pixel, SamplePosition offset,
+                                          const Fragment* transparent, const Fragment* transparent_end) {
+    const SamplePosition at = position(visibility, pixel, offset);
+    SampleColor c{{0, 0, 0}, 0};
+    if (const std::uint32_t triangle = visibility.triangle[pixel]; triangle != 0)
+        c = {shade_triangle(triangle - 1, at).radiance, 1.0f};
+    for (; transparent != transparent_end; ++transparent) {
+        const ShadedPoint<float> s = shade_triangle(transparent->triangle, at);
+        c.premultiplied = s.radiance * s.alpha + c.premultiplied * (1.0f - s.alpha);
+        c.alpha = s.alpha + c.alpha * (1.0f - s.alpha);
+    }
+    return c;
+}
+
+}  // namespace tessera

@@ -1,0 +1,76 @@
+#include "render/canvas.h"
+
+#include <limits>
+
+namespace tessera {
+
+Canvas::Canvas(const RenderOptions& options) : options_(options) {
+    const auto pixels = static_cast<std::size_t>(options.width) * static_cast<std::size_t>(options.height);
+    sums_.assign(4 * pixels, 0.0f);
+    hit_.assign(pixels, 0);
+}
+
+void Canvas::develop(const FilmView& film, RenderResult& result) const {
+    result.color = Image(options_.width, options_.height, PixelFormat::kRgba8);
+    if (options_.want_linear) result.linear = Image(options_.width, options_.height, PixelFormat::kRgba32f);
+    auto* color = result.color.data<std::uint8_t>();
+    float* linear = options_.want_linear ? result.linear.data<float>() : nullptr;
+    const float weight = 1.0f / static_cast<float>(options_.samples);
+    for (std::size_t pixel = 0; pixel < hit_.size(); ++pixel) {
+        const float* sum = sums_.data() + 4 * pixel;
+        const Vec3T<float> mean{sum[0] * weight, sum[1] * weight, sum[2] * weight};
+        const float alpha = sum[3] * weight;
+        const DisplayPixel<float> d = tessera::develop(film, mean, alpha);
+        color[4 * pixel + 0] = static_cast<std::uint8_t>(d.r);
+        color[4 * pixel + 1] = static_cast<std::uint8_t>(d.g);
+        color[4 * pixel + 2] = static_cast<std::uint8_t>(d.b);
+        color[4 * pixel + 3] = static_cast<std::uint8_t>(d.a);
+        if (linear) {
+            const float values[4] = {mean.x, mean.y, mean.z, alpha};
+            // The one NaN that may be: a file with broken numbers gives the same bits everywhere.
+            for (std::size_t i = 0; i < 4; ++i) linear[4 * pixel + i] = values[i] == values[i] ? values[i] : 0.0f;
+        }
+        result.stats.pixels_covered += hit_[pixel] != 0;
+    }
+}
+
+void take_labels(ReferenceEngine& engine, const RunControl& control, const RenderOptions& options,
+                 RenderResult& result) {
+    const SamplePosition centre{128, 128};
+    const Visibility seen = engine.see(centre, control);
+    std::vector<std::uint32_t> nearest = seen.triangle;
+    // Fragments come far to near: the last one that is solid enough wins.
+    for (const Fragment& f : seen.transparent) {
+        const auto width = static_cast<std::uint32_t>(seen.width);
+        const SamplePosition at{256 * static_cast<std::int32_t>(f.pixel % width) + centre.x,
+                                256 * static_cast<std::int32_t>(f.pixel / width) + centre.y};
+        if (engine.sampler().alpha(f.triangle, at) >= 0.5f) nearest[f.pixel] = f.triangle + 1;
+    }
+    if (options.want_primitive) {
+        result.primitive = Image(options.width, options.height, PixelFormat::kU32);
+        auto* out = result.primitive.data<std::uint32_t>();
+        for (std::size_t i = 0; i < nearest.size(); ++i) out[i] = nearest[i];
+    }
+    if (!options.want_depth) return;
+    result.depth = Image(options.width, options.height, PixelFormat::kF32);
+    float* out = result.depth.data<float>();
+    for (std::size_t i = 0; i < nearest.size(); ++i) {
+        const auto width = static_cast<std::size_t>(seen.width);
+        const SamplePosition at{256 * static_cast<std::int32_t>(i % width) + centre.x,
+                                256 * static_cast<std::int32_t>(i / width) + centre.y};
+        out[i] = nearest[i] == 0 ? std::numeric_limits<float>::infinity()
+                                 : -engine.sampler().point(nearest[i] - 1, at).position.z;
+    }
+}
+
+void add_counters(RenderStats& stats, const VisibilityCounters& counters, bool first) {
+    stats.fragments_passed += counters.fragments_passed;
+    if (!first) return;
+    stats.triangles = counters.triangles;
+    stats.culled_frustum = counters.culled_frustum;
+    stats.culled_backface = counters.culled_backface;
+    stats.culled_degenerate = counters.culled_degenerate;
+    stats.clipped = counters.clipped;
+}
+
+}  // namespace tessera

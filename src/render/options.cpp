@@ -1,0 +1,68 @@
+#include "render/options.h"
+
+#include <tessera/error.h>
+
+#include "image/color.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+namespace tessera {
+namespace {
+
+[[noreturn]] void refuse(const std::string& message) { throw Error(ErrorCode::kUsage, message); }
+
+// Depth, triangle and colour of every pixel while it is made, and the finished colour.
+constexpr std::uint64_t kBytesPerPixel = 4 + 4 + 16 + 4;
+
+}  // namespace
+
+const char* name(Engine engine) { return engine == Engine::kReferenceTrace ? "reference-trace" : "reference-raster"; }
+
+void check_options(const RenderOptions& o) {
+    if (o.width < 1 || o.height < 1 || o.width > kMaxImageSide || o.height > kMaxImageSide)
+        refuse("picture size " + std::to_string(o.width) + "x" + std::to_string(o.height) + ": sides must be 1 to " +
+               std::to_string(kMaxImageSide));
+    if (o.engine != Engine::kReferenceRaster && o.engine != Engine::kReferenceTrace) refuse("unknown engine");
+    if (o.samples < 1 || o.samples > 256) refuse("samples must be 1 to 256");
+    if (o.exposure_ev && !(std::fabs(*o.exposure_ev) <= 64.0f)) refuse("exposure must be within 64 EV");
+    if (o.ambient && !(*o.ambient >= 0.0f && *o.ambient < 1e9f)) refuse("ambient radiance must not be negative");
+    if (o.threads < 0) refuse("threads must not be negative");
+    if (o.background)
+        for (const float c : {o.background->x, o.background->y, o.background->z, o.background->w})
+            if (!(c >= 0.0f && c <= 1.0f)) refuse("background components must be 0 to 1");
+    resolve_isa(o.isa);
+    const auto pixels = static_cast<std::uint64_t>(o.width) * static_cast<std::uint64_t>(o.height);
+    if (pixels * kBytesPerPixel > o.max_bytes)
+        throw Error(ErrorCode::kLimit, "a picture of " + std::to_string(pixels) +
+                                           " pixels needs more memory than the limit of " +
+                                           std::to_string(o.max_bytes) + " bytes");
+}
+
+FilmView film_view(const RenderOptions& options, double exposure) {
+    FilmView film{};
+    film.exposure = static_cast<float>(exposure);
+    film.tone_map = options.tone_map;
+    if (options.background) {
+        const Vec4& b = *options.background;
+        const float encoded[3] = {b.x, b.y, b.z};
+        for (int i = 0; i < 3; ++i)
+            film.background[i] = static_cast<float>(linear_from_srgb(static_cast<double>(encoded[i])));
+        film.background[3] = b.w;
+    }
+    return film;
+}
+
+RunControl Watchdog::control(int step, int steps) const {
+    RunControl control;
+    const auto pixels = static_cast<std::uint64_t>(options_.width) * static_cast<std::uint64_t>(options_.height);
+    control.max_fragments = static_cast<std::size_t>((options_.max_bytes - pixels * kBytesPerPixel) / sizeof(Fragment));
+    control.checkpoint = [this, step, steps](double part) {
+        if (options_.cancel && options_.cancel()) throw Error(ErrorCode::kCancelled, "cancelled");
+        if (options_.progress && steps > 0) options_.progress((step + std::min(part, 1.0)) / steps);
+    };
+    return control;
+}
+
+}  // namespace tessera

@@ -1,0 +1,27 @@
+// What render options mean to the stages: checks, the film's parameters, progress and cancelling.
+#pragma once
+
+#include <tessera/render.h>
+
+#include "reference/visibility.h"
+#include "shading/film.h"
+
+namespace tessera {
+
+// Throws kUsage for options that make no sense and kLimit for pictures beyond the memory limit.
+void check_options(const RenderOptions& options);
+
+FilmView film_view(const RenderOptions& options, double exposure);
+
+// Turns the stages' checkpoints into calls of the caller's progress and cancel callbacks.
+class Watchdog {
+  public:
+    explicit Watchdog(const RenderOptions& options) : options_(options) {}
+    // For stage `step` of `steps`; 0 of 0 reports no progress.
+    RunControl control(int step, int steps) const;
+
+  private:
+    const RenderOptions& options_;
+};
+
+}  // namespace tessera

@@ -1,0 +1,80 @@
+// The renderer on one page: scene -> frame -> shading -> for every sample: visibility, shading ->
+// film. Everything that happens to a picture happens here, in this order.
+#include <tessera/error.h>
+#include <tessera/render.h>
+
+#include "core/fp_environment.h"
+#include "core/sampling.h"
+#include "reference/engine.h"
+#include "render/options.h"
+#include "render/canvas.h"
+#include "render/shading_scene.h"
+#include "render/stopwatch.h"
+
+namespace tessera {
+namespace {
+
+// Shades what was seen at one sample position of every pixel and adds it to the picture.
+void shade_pass(ReferenceEngine& engine, const Visibility& seen, SamplePosition offset, Canvas& canvas,
+                const std::function<void(double)>& checkpoint) {
+    const Fragment* transparent = seen.transparent.data();
+    const Fragment* const end = transparent + seen.transparent.size();
+    for (std::size_t pixel = 0; pixel < seen.depth.size(); ++pixel) {
+        if (pixel % static_cast<std::size_t>(seen.width) == 0)
+            checkpoint(static_cast<double>(pixel) / static_cast<double>(seen.depth.size()));
+        const Fragment* const first = transparent;
+        while (transparent != end && transparent->pixel == pixel) ++transparent;
+        if (seen.triangle[pixel] == 0 && first == transparent) continue;
+        const SampleColor c = engine.shade_sample(seen, pixel, offset, first, transparent);
+        canvas.add(pixel, c.premultiplied, c.alpha);
+    }
+}
+
+}  // namespace
+
+RenderResult render(const Scene& scene, const RenderOptions& options) {
+    check_options(options);
+    validate(scene);
+    const FpEnvironment exact;
+    RenderResult result;
+    Stopwatch watch(result.stats);
+    const Watchdog watchdog(options);
+
+    const Frame frame = make_frame(scene, options.view, options.width, options.height);
+    result.warnings = frame.warnings;
+    watch.phase("evaluate");
+
+    Arena arena(options.threads);
+    const ShadingScene shading(scene, frame, options, arena, result.warnings);
+    watch.phase("prepare");
+
+    const bool tracing = options.engine == Engine::kReferenceTrace;
+    ReferenceEngine engine(frame, shading.context(), tracing, options.shadows);
+    watch.phase("build");
+
+    Canvas canvas(options);
+    for (int sample = 0; sample < options.samples; ++sample) {
+        const SampleOffset s = sample_offset(sample, options.samples);
+        const SamplePosition offset{s.x, s.y};
+        const Visibility seen = engine.see(offset, watchdog.control(2 * sample, 2 * options.samples));
+        add_counters(result.stats, seen.counters, sample == 0);
+        watch.phase("visibility");
+        shade_pass(engine, seen, offset, canvas, watchdog.control(2 * sample + 1, 2 * options.samples).checkpoint);
+        watch.phase("shading");
+    }
+
+    if (options.want_depth || options.want_primitive) {
+        take_labels(engine, watchdog.control(0, 0), options, result);
+        watch.phase("labels");
+    }
+
+    canvas.develop(film_view(options, shading.exposure()), result);
+    watch.phase("film");
+
+    result.stats.exposure = shading.exposure();
+    result.stats.color_hash = hash_pixels(result.color);
+    watch.finish(options);
+    return result;
+}
+
+}  // namespace tessera

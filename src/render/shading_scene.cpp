@@ -1,0 +1,154 @@
+#include "render/shading_scene.h"
+
+#include "render/lighting.h"
+#include "simd/math.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <utility>
+
+namespace tessera {
+namespace {
+
+bool is_srgb(TextureSlot slot) { return slot == TextureSlot::kBaseColor || slot == TextureSlot::kEmissive; }
+
+void copy3(const Vec3& v, float scale, float* out) {
+    out[0] = v.x * scale;
+    out[1] = v.y * scale;
+    out[2] = v.z * scale;
+}
+
+MaterialView convert(const Material& m) {
+    MaterialView v{};
+    v.model = m.model;
+    v.alpha_mode = m.alpha_mode;
+    v.alpha_cutoff = m.alpha_cutoff;
+    v.double_sided = m.double_sided;
+    // The colour factor belongs to metallic-roughness and unlit; the Phong models have ka and kd.
+    const bool textbook =
+        m.model == ShadingModel::kLambert || m.model == ShadingModel::kPhong || m.model == ShadingModel::kBlinnPhong;
+    const Vec4 base = textbook ? Vec4{1, 1, 1, m.base_color.w} : m.base_color;
+    v.base_color[0] = base.x, v.base_color[1] = base.y, v.base_color[2] = base.z, v.base_color[3] = base.w;
+    v.metallic = m.metallic;
+    v.roughness = m.roughness;
+    v.normal_scale = m.normal_scale;
+    v.occlusion_strength = m.occlusion_strength;
+    copy3(m.emissive, m.emissive_strength, v.emission);
+    copy3(m.ambient, 1, v.ambient);
+    copy3(m.diffuse, 1, v.diffuse);
+    copy3(m.specular, 1, v.specular);
+    v.shininess = m.shininess;
+    return v;
+}
+
+// uv' = translate(offset) * rotate(rotation) * scale(scale) * uv, where a positive rotation turns the
+// texture counter-clockwise with v pointing down (KHR_texture_transform).
+void texture_transform(const TextureRef& ref, float* rows) {
+    const auto angle = static_cast<double>(ref.rotation);
+    const double c = math::cos(angle), s = math::sin(angle);
+    rows[0] = static_cast<float>(c * static_cast<double>(ref.scale.x));
+    rows[1] = static_cast<float>(s * static_cast<double>(ref.scale.y));
+    rows[2] = ref.offset.x;
+    rows[3] = static_cast<float>(-s * static_cast<double>(ref.scale.x));
+    rows[4] = static_cast<float>(c * static_cast<double>(ref.scale.y));
+    rows[5] = ref.offset.y;
+}
+
+TextureView make_view(const MipChain& chain, const Sampler& sampler, bool srgb) {
+    TextureView v{};
+    v.texels = chain.texels.data();
+    v.levels = std::min(static_cast<int>(chain.levels.size()), kMaxMipLevels);
+    for (int i = 0; i < v.levels; ++i) {
+        const MipLevel& level = chain.levels[static_cast<std::size_t>(i)];
+        v.offset[i] = static_cast<std::int32_t>(level.offset);
+        v.width[i] = level.width;
+        v.height[i] = level.height;
+    }
+    v.srgb = srgb;
+    v.mag_linear = sampler.mag_filter == Filter::kLinear;
+    v.min_linear = sampler.min_filter == Filter::kLinear;
+    v.mip = sampler.mip_filter;
+    v.wrap_s = sampler.wrap_s;
+    v.wrap_t = sampler.wrap_t;
+    return v;
+}
+
+}  // namespace
+
+void ShadingScene::make_materials(const Scene& scene, const Frame& frame, Arena& arena,
+                                  std::vector<std::string>& warnings) {
+    std::vector<bool> drawn(scene.materials.size() + 1, false);
+    for (const InstanceView& i : frame.instances) drawn[i.material] = true;
+    for (const Material& m : scene.materials) materials_.push_back(convert(m));
+    materials_.push_back(convert(Material{}));  // of primitives without one
+
+    // Which pictures are needed in which colour space, and which textures look at them.
+    std::map<std::pair<int, bool>, std::size_t> chain_of, view_of;
+    std::vector<std::pair<const Image*, bool>> wanted;
+    std::vector<std::pair<int, bool>> views;
+    for (std::size_t m = 0; m < scene.materials.size(); ++m) {
+        if (!drawn[m]) continue;
+        for (std::size_t slot = 0; slot < kTextureSlots; ++slot) {
+            const TextureRef& ref = scene.materials[m].textures[slot];
+            if (ref.texture == kNone) continue;
+            const Texture& texture = scene.textures[static_cast<std::size_t>(ref.texture)];
+            const Image* pixels = texture.picture == kNone
+                                      ? nullptr
+                                      : scene.pictures[static_cast<std::size_t>(texture.picture)].pixels.get();
+            if (!pixels || pixels->empty()) continue;
+            if (ref.uv_set < 0 || ref.uv_set >= kMaxUvSets) {
+                warnings.push_back("material " + std::to_string(m) + ": uv sets above " +
+                                   std::to_string(kMaxUvSets - 1) + " are not read; texture left out");
+                continue;
+            }
+            const bool srgb = is_srgb(static_cast<TextureSlot>(slot));
+            if (chain_of.emplace(std::pair(texture.picture, srgb), wanted.size()).second)
+                wanted.push_back({pixels, srgb});
+            if (view_of.emplace(std::pair(ref.texture, srgb), views.size()).second)
+                views.push_back({ref.texture, srgb});
+        }
+    }
+    chains_.resize(wanted.size());
+    arena.for_each(wanted.size(),
+                   [&](std::size_t i) { chains_[i] = make_mip_chain(*wanted[i].first, wanted[i].second); });
+    for (const auto& [index, srgb] : views) {
+        const Texture& texture = scene.textures[static_cast<std::size_t>(index)];
+        const Sampler sampler =
+            texture.sampler == kNone ? Sampler{} : scene.samplers[static_cast<std::size_t>(texture.sampler)];
+        textures_.push_back(make_view(chains_[chain_of.at({texture.picture, srgb})], sampler, srgb));
+    }
+    for (std::size_t m = 0; m < scene.materials.size(); ++m)
+        for (std::size_t slot = 0; slot < kTextureSlots; ++slot) {
+            const TextureRef& ref = scene.materials[m].textures[slot];
+            const auto view = view_of.find({ref.texture, is_srgb(static_cast<TextureSlot>(slot))});
+            if (!drawn[m] || view == view_of.end() || ref.uv_set < 0 || ref.uv_set >= kMaxUvSets) continue;
+            TextureInput& input = materials_[m].inputs[slot];
+            input.texture = &textures_[view->second];
+            input.uv_set = ref.uv_set;
+            texture_transform(ref, input.transform);
+        }
+}
+
+ShadingScene::ShadingScene(const Scene& scene, const Frame& frame, const RenderOptions& options, Arena& arena,
+                           std::vector<std::string>& warnings) {
+    make_materials(scene, frame, arena, warnings);
+    const bool studio =
+        options.lighting == Lighting::kStudio || (options.lighting == Lighting::kAuto && frame.lights.empty());
+    lights_ = studio ? studio_lights() : scene_lights(scene, frame);
+    context_.materials = materials_.data();
+    context_.lights = lights_.data();
+    context_.light_count = static_cast<int>(lights_.size());
+    context_.orthographic = frame.projection.orthographic;
+    context_.footprint_scale = 1.0f / std::sqrt(static_cast<float>(options.samples));
+
+    if (options.exposure_ev)
+        exposure_ = math::exp2(static_cast<double>(*options.exposure_ev));
+    else
+        exposure_ = studio ? 1.0 : metered_exposure(frame, context_);
+    context_.unlit_scale = static_cast<float>(1.0 / exposure_);
+    context_.ambient = studio ? studio_ambient() : uniform_ambient(static_cast<float>(kDefaultAmbient / exposure_));
+    if (options.ambient) context_.ambient = uniform_ambient(*options.ambient);
+}
+
+}  // namespace tessera

@@ -1,0 +1,39 @@
+// The scene as shading reads it: materials with their textures' mip chains, lights and ambient light
+// in camera space. Owns what its ShadingContext points to.
+#pragma once
+
+#include <tessera/render.h>
+
+#include "core/parallel.h"
+#include "geometry/frame.h"
+#include "image/mipmap.h"
+#include "shading/shade.h"
+
+#include <string>
+#include <vector>
+
+namespace tessera {
+
+class ShadingScene {
+  public:
+    // Builds mip chains in parallel. `warnings` receives what cannot be honoured.
+    ShadingScene(const Scene& scene, const Frame& frame, const RenderOptions& options, Arena& arena,
+                 std::vector<std::string>& warnings);
+    ShadingScene(const ShadingScene&) = delete;
+    ShadingScene& operator=(const ShadingScene&) = delete;
+
+    const ShadingContext& context() const { return context_; }
+    double exposure() const { return exposure_; }
+
+  private:
+    void make_materials(const Scene& scene, const Frame& frame, Arena& arena, std::vector<std::string>& warnings);
+
+    std::vector<MipChain> chains_;
+    std::vector<TextureView> textures_;
+    std::vector<MaterialView> materials_;
+    std::vector<LightView> lights_;
+    ShadingContext context_{};
+    double exposure_ = 1;
+};
+
+}  // namespace tessera
