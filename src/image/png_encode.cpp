@@ -1,10 +1,11 @@
 // Writing PNG. The picture is cut into strips whose height depends on the picture alone, so that the
 // bytes are the same for every number of threads. At the fast levels each strip is filtered and
-// deflated by a task of its own and becomes one IDAT chunk; its deflate stream ends at a byte border
-// without the final mark (a sync flush), so the strips join to one stream. The higher levels filter
-// in parallel and deflate the whole stream at once, for size.
+// deflated by a task of its own and becomes one IDAT chunk; its deflate blocks end at a byte border
+// without the final mark, so the strips join to one stream. The higher levels filter in parallel and
+// deflate the whole stream at once, for size.
 #include "core/parallel.h"
 #include "image/codecs.h"
+#include "image/deflate.h"
 #include "image/png_filter.h"
 
 #include <tessera/error.h>
@@ -25,7 +26,7 @@ using Bytes = std::vector<std::uint8_t>;
 
 // About as many filtered bytes per strip: enough for a good Huffman code, few enough to share out.
 constexpr std::size_t kStripBytes = std::size_t{192} << 10;
-// Up to this level strips are deflated in parallel by zlib; above, libdeflate takes the whole.
+// Up to this level strips are deflated in parallel by our own code; above, libdeflate takes the whole.
 constexpr int kLastFastLevel = 1;
 
 struct Layout {
@@ -104,37 +105,17 @@ std::size_t filtered_bytes(const Layout& l, std::size_t strip) {
     return (std::min(first + l.strip_rows, static_cast<std::size_t>(l.height)) - first) * (l.row_bytes + 1);
 }
 
-// Raw deflate of one strip. Run-length matching: after filtering, smooth shading is small numbers and
-// flat regions are runs; longer-range matches cost three times the time for little.
-Bytes deflate_strip(const Bytes& in, int level, bool last) {
-    z_stream z{};
-    if (deflateInit2(&z, level, Z_DEFLATED, -15, 9, Z_RLE) != Z_OK) throw_memory();
-    const std::unique_ptr<z_stream, int (*)(z_stream*)> owner(&z, deflateEnd);
-    Bytes out(deflateBound(&z, static_cast<uLong>(in.size())) + 16);
-    z.next_in = const_cast<Bytef*>(in.data());
-    z.avail_in = static_cast<uInt>(in.size());
-    z.next_out = out.data();
-    z.avail_out = static_cast<uInt>(out.size());
-    const int result = deflate(&z, last ? Z_FINISH : Z_SYNC_FLUSH);
-    if (result != (last ? Z_STREAM_END : Z_OK) || z.avail_in != 0 || z.avail_out == 0)
-        throw Error(ErrorCode::kInternal, "deflate failed");
-    out.resize(z.total_out);
-    return out;
-}
-
 void put_big_endian(std::uint8_t* to, std::uint32_t v) {
     for (int i = 0; i < 4; ++i) to[i] = static_cast<std::uint8_t>(v >> (24 - 8 * i));
 }
 
 // Length, type, data, checksum of type and data.
-Bytes make_chunk(const char* type, std::span<const std::uint8_t> head, std::span<const std::uint8_t> data = {}) {
-    const std::size_t size = head.size() + data.size();
-    Bytes chunk(size + 12);
-    put_big_endian(&chunk[0], static_cast<std::uint32_t>(size));
+Bytes make_chunk(const char* type, std::span<const std::uint8_t> data) {
+    Bytes chunk(data.size() + 12);
+    put_big_endian(&chunk[0], static_cast<std::uint32_t>(data.size()));
     std::memcpy(&chunk[4], type, 4);
-    std::copy(head.begin(), head.end(), chunk.begin() + 8);
-    std::copy(data.begin(), data.end(), chunk.begin() + 8 + static_cast<std::ptrdiff_t>(head.size()));
-    put_big_endian(&chunk[8 + size], libdeflate_crc32(0, &chunk[4], size + 4));
+    std::copy(data.begin(), data.end(), chunk.begin() + 8);
+    put_big_endian(&chunk[8 + data.size()], libdeflate_crc32(0, &chunk[4], data.size() + 4));
     return chunk;
 }
 
@@ -148,14 +129,21 @@ std::vector<Bytes> fast_data(const Image& image, const Layout& l, int level, Are
         Bytes filtered(filtered_bytes(l, strip));
         filter_strip(image, l, strip, filtered.data());
         sums[strip] = libdeflate_adler32(1, filtered.data(), filtered.size());
-        const Bytes deflated = deflate_strip(filtered, level, strip + 1 == l.strips);
-        chunks[strip] = make_chunk("IDAT", std::span(kZlibHeader).first(strip == 0 ? 2 : 0), deflated);
+        Bytes data;
+        if (strip == 0) data.assign(kZlibHeader.begin(), kZlibHeader.end());
+        if (level == 0)
+            deflate_stored(filtered, data);
+        else
+            deflate_fast(filtered, l.pixel_bytes, data);
+        chunks[strip] = make_chunk("IDAT", data);
     });
     uLong sum = 1;
     for (std::size_t strip = 0; strip < l.strips; ++strip)
         sum = adler32_combine(sum, sums[strip], static_cast<z_off_t>(filtered_bytes(l, strip)));
-    std::array<std::uint8_t, 4> tail{};
-    put_big_endian(tail.data(), static_cast<std::uint32_t>(sum));
+    Bytes tail;
+    deflate_end(tail);
+    tail.resize(tail.size() + 4);
+    put_big_endian(&tail[tail.size() - 4], static_cast<std::uint32_t>(sum));
     chunks.back() = make_chunk("IDAT", tail);
     return chunks;
 }
