@@ -1,1 +1,54 @@
-# Compilation of *.simd.cpp once per instruction set (placeholder until the number layer lands).
+# tessera_kernels(TARGET file.simd.cpp ...): compiles every file once per instruction set, with that
+# set's flags, TESSERA_ISA_NAMESPACE (scalar, sse4, avx2, avx512) and TESSERA_SIMD_LANES, and adds the
+# objects to TARGET (a module of tessera_module, or an executable). The flags are what simd/isa.cpp
+# looks for in the processor. Elsewhere than on x86-64 only `scalar` is compiled.
+if(CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|AMD64|amd64)$")
+  set(TESSERA_ISAS scalar sse4 avx2 avx512)
+  find_path(TESSERA_HIGHWAY_INCLUDE_DIR hwy/highway.h REQUIRED)
+else()
+  set(TESSERA_ISAS scalar)
+endif()
+set(TESSERA_ISA_LANES_scalar 1)
+set(TESSERA_ISA_LANES_sse4 4)
+set(TESSERA_ISA_LANES_avx2 8)
+set(TESSERA_ISA_LANES_avx512 16)
+set(TESSERA_ISA_FLAGS_scalar "")
+set(TESSERA_ISA_FLAGS_sse4 -msse4.2 -maes -mpclmul)
+set(TESSERA_ISA_FLAGS_avx2 -mavx2 -mfma -mf16c -mbmi -mbmi2 -mlzcnt -maes -mpclmul)
+set(TESSERA_ISA_FLAGS_avx512 -march=skylake-avx512)
+
+function(tessera_kernels target)
+  get_target_property(type ${target} TYPE)
+  foreach(isa ${TESSERA_ISAS})
+    set(library ${target}_${isa})
+    add_library(${library} OBJECT ${ARGN})
+    # Optimised in every configuration: without inlining Highway leaves symbols that its instruction
+    # sets share, and the kernels crawl.
+    # One-lane masks are bool, and & on them is meant.
+    target_compile_options(${library} PRIVATE ${TESSERA_ISA_FLAGS_${isa}} $<$<CONFIG:Debug>:-O2>
+      $<$<CXX_COMPILER_ID:Clang>:-Wno-bitwise-instead-of-logical>)
+    target_compile_definitions(${library} PRIVATE
+      TESSERA_ISA_NAMESPACE=${isa} TESSERA_SIMD_LANES=${TESSERA_ISA_LANES_${isa}})
+    target_link_libraries(${library} PRIVATE tessera_flags)
+    if(NOT isa STREQUAL scalar)
+      target_include_directories(${library} SYSTEM PRIVATE ${TESSERA_HIGHWAY_INCLUDE_DIR})
+      set_property(GLOBAL APPEND PROPERTY TESSERA_KERNEL_LIBRARIES ${library})
+    endif()
+    if(type STREQUAL OBJECT_LIBRARY)
+      set_property(GLOBAL APPEND PROPERTY TESSERA_MODULES ${library})
+    else()
+      target_sources(${target} PRIVATE $<TARGET_OBJECTS:${library}>)
+    endif()
+  endforeach()
+endfunction()
+
+# Adds one test per vector object library: none of its objects may define a symbol that the linker
+# could take in place of another instruction set's copy. To be called once, after all kernels.
+function(tessera_add_kernel_symbol_tests)
+  get_property(libraries GLOBAL PROPERTY TESSERA_KERNEL_LIBRARIES)
+  foreach(library ${libraries})
+    string(REGEX REPLACE ".*_" "" isa ${library})
+    add_test(NAME kernel_symbols.${library} COMMAND ${CMAKE_COMMAND} -D NM=${CMAKE_NM} -D ISA=${isa}
+      -D "OBJECTS=$<JOIN:$<TARGET_OBJECTS:${library}>,;>" -P ${PROJECT_SOURCE_DIR}/cmake/CheckKernelSymbols.cmake)
+  endforeach()
+endfunction()

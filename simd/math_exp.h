@@ -142,7 +142,7 @@ TESSERA_INLINE DoubleWord<F> log2_wide(F x) {
 // x^y with the special cases of IEEE 754 `pow`: pow(x, 0) = pow(1, y) = 1 even for NaN, a negative x
 // needs a whole y, zeros and infinities keep the sign of odd powers.
 template <class F>
-TESSERA_INLINE F pow(F x, F y) {
+TESSERA_INLINE F pow(F x, std::type_identity_t<F> y) {
     const F zero(LaneOf<F>(0)), one(LaneOf<F>(1)), infinity(kInfinity<F>);
     const F magnitude = abs(x);
     DoubleWord<F> log2_x = log2_wide(magnitude);

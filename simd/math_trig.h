@@ -172,7 +172,7 @@ TESSERA_INLINE F atan(F x) {
 
 // The angle of the point (x, y), -pi .. pi, with the special cases of IEEE 754 `atan2`.
 template <class F>
-TESSERA_INLINE F atan2(F y, F x) {
+TESSERA_INLINE F atan2(F y, std::type_identity_t<F> x) {
     const F zero(0.0f), one(1.0f), infinity(kInfinity<F>);
     F a = abs(y), b = abs(x);
     // Infinite coordinates count as 1 against 0; large ones are halved twice so that x + y is finite.
