@@ -94,7 +94,9 @@ def cornell_box():
              mesh=doc.mesh("block", block, white))
     doc.node("tall block", translation=[-0.34, 0.6, -0.32], rotation=about([0, 1, 0], 18), scale=[1, 2, 1],
              mesh=len(doc.parts["meshes"]) - 1)
-    doc.light("lamp light", "point", (1, 0.88, 0.68), 30.0, [0, 1.82, 0])
+    doc.light("lamp light", "point", (1, 0.88, 0.68), 30.0, [0, 1.72, 0])
+    # Stands for the light that walls throw back, which a ray caster does not follow.
+    doc.light("bounced light", "point", (1, 0.9, 0.78), 34.0, [0.5, 1.3, 3.6])
     doc.camera("front", [0, 1, 3.85], [0, 1, 0], 39.5)
     doc.camera("corner", [0.75, 1.7, 2.2], [-0.25, 0.5, -0.3], 48)
     return doc
@@ -107,17 +109,18 @@ def spheres():
     doc.node("floor", mesh=doc.mesh("floor", quad([0, 0, 0], [40, 0, 0], [0, 0, -40], (40, 40), 8), floor))
     ball = sphere(1.0, 64, 32)
     for name, color, metallic, roughness, radius, x, z in (
-            ("gold", (1.0, 0.71, 0.29), 1.0, 0.3, 1.0, 0.0, 0.0), ("copper", (0.95, 0.57, 0.46), 1.0, 0.38, 0.7, -1.95, 0.55),
-            ("steel", (0.62, 0.64, 0.66), 1.0, 0.26, 0.8, 1.95, 0.2), ("red plastic", srgb("#c8342b"), 0.0, 0.22, 0.5, -0.85, 1.55),
+            ("gold", (1.0, 0.71, 0.29), 1.0, 0.42, 1.0, 0.0, 0.0), ("copper", (0.95, 0.57, 0.46), 1.0, 0.5, 0.7, -1.95, 0.55),
+            ("steel", (0.78, 0.79, 0.8), 1.0, 0.36, 0.8, 1.95, 0.2), ("red plastic", srgb("#c8342b"), 0.0, 0.22, 0.5, -0.85, 1.55),
             ("teal plastic", srgb("#1f8a8c"), 0.0, 0.3, 0.42, 0.75, 1.6), ("porcelain", srgb("#f2ede4"), 0.0, 0.15, 0.85, -2.6, -1.55),
             ("blue rubber", srgb("#33558f"), 0.0, 0.7, 0.95, 2.75, -1.7), ("olive clay", srgb("#8a8a3c"), 0.0, 0.95, 0.34, 2.05, 1.75),
-            ("plum plastic", srgb("#7c3a6b"), 0.0, 0.25, 0.36, -2.35, 1.9)):
+            ("plum plastic", srgb("#7c3a6b"), 0.0, 0.25, 0.36, -1.75, 2.0)):
         material = doc.material(name, color, metallic, roughness)
         doc.node(name, translation=[x, radius, z], scale=[radius] * 3, mesh=doc.mesh(name, ball, material, "ball"))
     doc.light("sun", "directional", (1, 0.95, 0.86), 8.0, [4, 6, 4.5], [0, 0, 0])
-    doc.light("sky", "directional", (0.72, 0.84, 1), 2.6, [-5, 3.5, 3], [0, 0, 0])
-    doc.light("rim", "directional", (1, 0.98, 0.95), 3.0, [-1.5, 3, -6], [0, 0, 0])
-    doc.camera("main", [0.6, 2.35, 7.4], [0, 0.62, 0], 32)
+    doc.light("sky", "directional", (0.72, 0.84, 1), 3.2, [-5, 3.5, 3], [0, 0, 0])
+    doc.light("front", "directional", (1, 1, 1), 1.6, [0.5, 0.9, 6], [0, 0, 0])
+    doc.light("rim", "directional", (1, 0.98, 0.95), 2.0, [-1.5, 5, -6], [0, 0, 0])
+    doc.camera("main", [0.7, 2.9, 9.2], [0.1, 0.62, 0], 30)
     doc.camera("low", [-3.6, 0.75, 5.2], [0.1, 0.8, 0], 38)
     return doc
 
@@ -126,7 +129,8 @@ def lights():
     doc = Document("Kinds of light")
     plaster = doc.material("plaster", (0.78, 0.77, 0.75), roughness=0.9)
     stone = doc.material("stone", srgb("#d9d2c5"), roughness=0.6)
-    bulb = doc.material("bulb", (0, 0, 0), **glow((1, 0.62, 0.28), 60.0))
+    wax = doc.material("wax", srgb("#efe3cc"), roughness=0.6)
+    flame = doc.material("flame", (0, 0, 0), **glow((1, 0.62, 0.28), 20.0))
     doc.node("floor", mesh=doc.mesh("floor", quad([0, 0, 2], [8, 0, 0], [0, 0, -5]), plaster))
     doc.node("wall", mesh=doc.mesh("wall", quad([0, 3, -2], [8, 0, 0], [0, 3.5, 0]), plaster))
     plinth = doc.mesh("plinth", cylinder(0.55, 0.55, 0.5, 0.04), stone)
@@ -136,13 +140,14 @@ def lights():
         place = doc.node(name + " place", translation=[x, 0, 0.2], rotation=about([0, 1, 0], turn))
         doc.node(name + " plinth", place, mesh=plinth)
         doc.node(name, place, mesh=doc.mesh(name, shape, stone))
-    for name, color, x, height in (("red spot", (1, 0.22, 0.14), -3.1, 3.9), ("green spot", (0.3, 1, 0.36), 0.0, 4.1),
-                                   ("blue spot", (0.2, 0.42, 1), 3.1, 3.9)):
-        doc.light(name, "spot", color, 260.0, [x, height, 2.6], [x * 0.9, 1.5, -2], cone=(11, 19))
-    doc.light("moon", "directional", (0.66, 0.76, 1), 2.2, [-3, 5, 6], [0, 0, 0])
-    lamp = doc.node("lamp", translation=[1.3, 0.32, 1.75])
-    doc.node("bulb", lamp, mesh=doc.mesh("bulb", sphere(0.13, 32, 16), bulb))
-    doc.light("lamp light", "point", (1, 0.62, 0.28), 6.0, [0, 0, 0], parent=lamp)
+    for name, color, x, height in (("red spot", (1, 0.1, 0.06), -3.1, 3.9), ("green spot", (0.1, 0.9, 0.16), 0.0, 4.1),
+                                   ("blue spot", (0.08, 0.22, 1), 3.1, 3.9)):
+        doc.light(name, "spot", color, 70.0, [x, height, 3.2], [x * 0.9, 1.35, -2], cone=(12, 20))
+    doc.light("moon", "directional", (0.66, 0.76, 1), 0.45, [-3, 5, 6], [0, 0, 0])
+    candle = doc.node("candle", translation=[1.3, 0, 1.5], mesh=doc.mesh("candle", cylinder(0.12, 0.11, 0.5, 0.02), wax))
+    doc.node("flame", candle, translation=[0, 0.6, 0], scale=[0.04, 0.09, 0.04], mesh=doc.mesh("flame", sphere(1, 24, 16), flame))
+    # Above the flame, which would otherwise shut it in.
+    doc.light("candle light", "point", (1, 0.62, 0.28), 3.2, [0, 0.75, 0], parent=candle)
     doc.camera("main", [0, 2.15, 8.6], [0, 1.45, -0.6], 37)
     doc.camera("side", [-6.2, 2.6, 5.6], [0.2, 1.2, -0.4], 40)
     return doc
@@ -153,8 +158,8 @@ def materials():
     dimples = doc.texture("dimples", "dimples-normal.png")
     lattice = doc.texture("lattice", "lattice.png")
     ball = sphere(0.46, 56, 28)
-    backdrop = doc.material("backdrop", srgb("#8d939b"), roughness=1.0)
-    doc.node("backdrop", mesh=doc.mesh("backdrop", quad([0, 0, -1.1], [9, 0, 0], [0, 6, 0]), backdrop))
+    backdrop = doc.material("backdrop", srgb("#a9afb7"), roughness=1.0)
+    doc.node("backdrop", mesh=doc.mesh("backdrop", quad([0, 0, -9.5], [18, 0, 0], [0, 12, 0]), backdrop))
 
     def place(name, column, row, material):
         doc.node(name, translation=[column - 3.0, 1.65 - 1.1 * row, 0], mesh=doc.mesh(name, ball, material, "ball"))
@@ -188,10 +193,10 @@ def materials():
     for column, (name, material) in enumerate(samples):
         place(name, column, 3, material)
     doc.light("key", "directional", (1, 0.97, 0.92), 7.0, [-3.5, 5, 6], [0, 0, 0])
-    doc.light("fill", "directional", (0.82, 0.9, 1), 2.4, [5, 1.5, 5], [0, 0, 0])
-    doc.light("top", "point", (1, 1, 1), 45.0, [1.5, 3.6, 2.6])
-    doc.camera("front", [0, 0, 11.5], [0, 0, 0], 25)
-    doc.camera("oblique", [-6, 2.6, 8], [-0.3, -0.2, 0], 30)
+    doc.light("fill", "directional", (0.82, 0.9, 1), 3.0, [5, 5, 5], [0, 0, 0])
+    doc.light("top", "directional", (1, 1, 1), 2.4, [1.2, 8, 3], [0, 0, 0])
+    doc.camera("front", [0, 0, 15], [0, 0, 0], 22)
+    doc.camera("oblique", [-6.5, 2.8, 11], [-0.2, -0.1, 0], 27)
     return doc
 
 
@@ -233,10 +238,10 @@ def hierarchy():
         side = doc.node(name, wrist, translation=[0, 0.48, 0], scale=scale, mesh=finger)
         doc.node(name + " tip", side, mesh=tip)
     crate = doc.mesh("crate", box([0.5, 0.5, 0.5], 0.04), cargo)
-    for i, (x, y, z, turn) in enumerate(((2.05, 0.25, -0.75, 12), (2.2, 0.25, 0.0, -9), (2.12, 0.75, -0.4, 33))):
+    for i, (x, y, z, turn) in enumerate(((1.75, 0.25, -0.35, 12), (2.4, 0.25, 0.0, --16), (2.1, 0.75, -0.18, 40))):
         doc.node(f"crate {i}", translation=[x, y, z], rotation=about([0, 1, 0], turn), mesh=crate)
-    doc.light("sun", "directional", (1, 0.95, 0.87), 8.0, [-3, 7, 5], [0, 0, 0])
-    doc.light("sky", "directional", (0.74, 0.85, 1), 2.4, [5, 3, 4], [0, 0, 0])
+    doc.light("sun", "directional", (1, 0.95, 0.87), 8.0, [4, 7, 4], [0, 0, 0])
+    doc.light("sky", "directional", (0.74, 0.85, 1), 2.8, [-4, 3, 5], [0, 0, 0])
     doc.camera("main", [3.1, 2.7, 6.6], [0.75, 1.2, 0.2], 33)
     doc.camera("above", [1.0, 8.2, 2.2], [0.7, 0, 0.1], 34)
     return doc
@@ -247,7 +252,7 @@ def transparency():
     leaf_picture = doc.texture("leaf", "leaf.png", wrap=33071)
     leaf = doc.material("leaf", (1, 1, 1), roughness=0.6, texture=leaf_picture, alphaMode="MASK", alphaCutoff=0.5,
                         doubleSided=True)
-    table = doc.material("table", srgb("#c9b79c"), roughness=0.8)
+    table = doc.material("table", srgb("#dccfb8"), roughness=0.8)
     pot = doc.material("terracotta", srgb("#b5623c"), roughness=0.75)
     twig = doc.material("twig", srgb("#5b6b35"), roughness=0.8)
     doc.node("table", mesh=doc.mesh("table", quad([0, 0, 0], [12, 0, 0], [0, 0, -12]), table))
@@ -263,14 +268,14 @@ def transparency():
         doc.node(f"leaf {i}", turn, rotation=about([1, 0, 0], 78 - 52 * t), scale=[1.0 - 0.35 * t] * 3, mesh=blade)
     panes = doc.node("panes", translation=[1.35, 1.0, 0.1])
     pane = quad([0, 0, 0], [0.95, 0, 0], [0, 0.95, 0])
-    for name, color, turn in (("rose pane", srgb("#d6336c"), 20), ("amber pane", srgb("#f2a20c"), 80),
-                              ("blue pane", srgb("#1c7ed6"), 140)):  # three panes through one axis
-        glass = doc.material(name, color, roughness=0.15, alpha=0.5, alphaMode="BLEND", doubleSided=True)
+    for name, color, turn in (("rose pane", srgb("#d6336c"), -16), ("amber pane", srgb("#f2a20c"), 44),
+                              ("blue pane", srgb("#1c7ed6"), 104)):  # three panes through one axis
+        glass = doc.material(name, color, roughness=0.15, alpha=0.55, alphaMode="BLEND", doubleSided=True)
         doc.node(name, panes, rotation=about([0, 1, 0], turn), mesh=doc.mesh(name, pane, glass, "pane"))
     marble = doc.material("marble ball", srgb("#efeae2"), roughness=0.3)
     doc.node("ball", panes, translation=[0, -0.62, 0], scale=[0.38] * 3, mesh=doc.mesh("ball", sphere(), marble))
-    doc.light("window", "directional", (1, 0.96, 0.88), 7.0, [3, 6, 4], [0, 0, 0])
-    doc.light("room", "directional", (0.8, 0.88, 1), 2.6, [-5, 3, 4], [0, 0, 0])
+    doc.light("window", "directional", (1, 0.96, 0.88), 6.0, [2, 5, 6], [0, 0, 0])
+    doc.light("room", "directional", (0.8, 0.88, 1), 3.0, [-4, 2, 6], [0, 0, 0])
     doc.camera("main", [0, 2.15, 6.8], [0, 1.0, 0], 33)
     doc.camera("panes", [1.9, 2.9, 3.6], [1.35, 0.85, 0.1], 36)
     return doc
