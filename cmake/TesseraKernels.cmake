@@ -43,12 +43,15 @@ function(tessera_kernels target)
 endfunction()
 
 # Adds one test per vector object library: none of its objects may define a symbol that the linker
-# could take in place of another instruction set's copy. To be called once, after all kernels.
+# could take in place of another instruction set's copy. To be called after all kernels are known.
 function(tessera_add_kernel_symbol_tests)
   get_property(libraries GLOBAL PROPERTY TESSERA_KERNEL_LIBRARIES)
   foreach(library ${libraries})
     string(REGEX REPLACE ".*_" "" isa ${library})
-    add_test(NAME kernel_symbols.${library} COMMAND ${CMAKE_COMMAND} -D NM=${CMAKE_NM} -D ISA=${isa}
-      -D "OBJECTS=$<JOIN:$<TARGET_OBJECTS:${library}>,;>" -P ${PROJECT_SOURCE_DIR}/cmake/CheckKernelSymbols.cmake)
+    tessera_add_kernel_symbol_test(kernel_symbols.${library} ${library} ${isa})
   endforeach()
+endfunction()
+function(tessera_add_kernel_symbol_test name library isa)
+  add_test(NAME ${name} COMMAND ${CMAKE_COMMAND} -D NM=${CMAKE_NM} -D ISA=${isa}
+    -D "OBJECTS=$<JOIN:$<TARGET_OBJECTS:${library}>,;>" -P ${PROJECT_SOURCE_DIR}/cmake/CheckKernelSymbols.cmake)
 endfunction()

@@ -5,12 +5,11 @@ endforeach()
 
 # Sanitizers add weak symbols of their own.
 if(NOT TESSERA_SANITIZE AND NOT TESSERA_ISAS STREQUAL "scalar")
+  cmake_language(DEFER CALL tessera_add_kernel_symbol_tests)
   add_library(tessera_leaking_avx2 OBJECT ${CMAKE_CURRENT_SOURCE_DIR}/simd/leaking.cpp)
   target_compile_options(tessera_leaking_avx2 PRIVATE ${TESSERA_ISA_FLAGS_avx2})
   target_link_libraries(tessera_leaking_avx2 PRIVATE tessera_flags)
-  tessera_add_kernel_symbol_tests()
-  add_test(NAME kernel_symbols.finds_a_leak COMMAND ${CMAKE_COMMAND} -D NM=${CMAKE_NM} -D ISA=avx2
-    -D "OBJECTS=$<TARGET_OBJECTS:tessera_leaking_avx2>" -P ${PROJECT_SOURCE_DIR}/cmake/CheckKernelSymbols.cmake)
+  tessera_add_kernel_symbol_test(kernel_symbols.finds_a_leak tessera_leaking_avx2 avx2)
   set_tests_properties(kernel_symbols.finds_a_leak PROPERTIES
     PASS_REGULAR_EXPRESSION "weak symbols outside the namespaces of avx2:[ \n]*_ZN7tessera19shared_between_isasEf")
 endif()
