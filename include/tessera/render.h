@@ -30,7 +30,7 @@ struct View {
     std::optional<int> camera;
     std::optional<Vec3> eye, target;
     Vec3 up{0, 1, 0};
-    std::optional<float> yfov;  // radians; default 45 degrees
+    std::optional<float> yfov;  // radians; default 35 degrees
     bool frame_bounds = false;  // ignore the scene's cameras
 };
 

@@ -106,12 +106,12 @@ std::vector<LightView> scene_lights(const Scene& scene, const Frame& frame) {
 }
 
 std::vector<LightView> studio_lights() {
-    return {directional({-0.45f, 0.65f, 0.62f}, {2.05f, 2.0f, 1.9f}),
-            directional({0.80f, 0.10f, 0.59f}, {0.45f, 0.48f, 0.55f}),
+    return {directional({-0.45f, 0.65f, 0.62f}, {2.35f, 2.3f, 2.2f}),
+            directional({0.80f, 0.10f, 0.59f}, {0.65f, 0.68f, 0.75f}),
             directional({0.35f, 0.55f, -0.76f}, {0.9f, 0.92f, 1.0f})};
 }
 
-AmbientView studio_ambient() { return {{0.42f, 0.44f, 0.48f}, {0.13f, 0.125f, 0.12f}, {0, 1, 0}}; }
+AmbientView studio_ambient() { return {{0.50f, 0.52f, 0.56f}, {0.17f, 0.165f, 0.16f}, {0, 1, 0}}; }
 
 AmbientView uniform_ambient(float radiance) {
     return {{radiance, radiance, radiance}, {radiance, radiance, radiance}, {0, 1, 0}};

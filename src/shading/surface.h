@@ -52,13 +52,20 @@ TESSERA_INLINE UintOf<F> out_code(const ClipVertex<F>& v) {
 // sides are decided by the pixels, the far plane by the depth test against a buffer cleared to 0.
 inline constexpr std::uint32_t kMustClip = kOutNear | kOutGuard;
 
-// Clip space to the picture in pixels (y down), then to 24.8: nearest, ties to even.
+// A vertex in the picture, y down, in 1/256 pixel: where it is, and where it snaps to on the grid of
+// 24.8 fixed point (nearest, ties to even).
 template <class F>
-TESSERA_INLINE Vec2T<IntOf<F>> snap(const ClipVertex<F>& v, float width, float height) {
-    const F half_w(width * 0.5f), half_h(height * 0.5f);
-    const F px = v.x / v.w * half_w + half_w;
-    const F py = half_h - v.y / v.w * half_h;
-    return {to_int(round_even(px * F(256.0f))), to_int(round_even(py * F(256.0f)))};
+struct PictureVertex {
+    F x, y;
+    IntOf<F> snapped_x, snapped_y;
+};
+
+template <class F>
+TESSERA_INLINE PictureVertex<F> to_picture(const ClipVertex<F>& v, float width, float height) {
+    const F half_w(width * 128.0f), half_h(height * 128.0f);
+    const F x = v.x / v.w * half_w + half_w;
+    const F y = half_h - v.y / v.w * half_h;
+    return {x, y, to_int(round_even(x)), to_int(round_even(y))};
 }
 
 // Normalised device coordinates of a picture position.
@@ -83,20 +90,24 @@ struct DepthPlane {
     }
 };
 
-// For a triangle that needs no clipping: from its snapped vertices and their depths z / w. `area` is
-// twice the signed area in 1/65536 square pixels, exact before it is rounded to F. Never called with
-// zero area.
+// For a triangle that needs no clipping: through its vertices where they are, not where they snap to,
+// and their depths z / w. The anchor is the first snapped vertex.
 template <class F>
-TESSERA_INLINE DepthPlane<F> depth_plane(const Vec2T<IntOf<F>> (&p)[3], const F (&z)[3], F area) {
-    const F dx1 = to_float(p[1].x - p[0].x), dy1 = to_float(p[1].y - p[0].y);
-    const F dx2 = to_float(p[2].x - p[0].x), dy2 = to_float(p[2].y - p[0].y);
+TESSERA_INLINE DepthPlane<F> depth_plane(const PictureVertex<F> (&p)[3], const F (&z)[3]) {
+    const F dx1 = p[1].x - p[0].x, dy1 = p[1].y - p[0].y;
+    const F dx2 = p[2].x - p[0].x, dy2 = p[2].y - p[0].y;
     const F dz1 = z[1] - z[0], dz2 = z[2] - z[0];
+    const F area = dx1 * dy2 - dx2 * dy1;
+    // A triangle that has area only by snapping is as good as level.
+    const auto flat = area == F(0.0f);
+    const F inverse = select(flat, F(0.0f), F(1.0f) / select(flat, F(1.0f), area));
     DepthPlane<F> plane;
-    plane.anchor_x = p[0].x;
-    plane.anchor_y = p[0].y;
-    plane.depth = z[0];
-    plane.ddx = (dz1 * dy2 - dz2 * dy1) / area;
-    plane.ddy = (dz2 * dx1 - dz1 * dx2) / area;
+    plane.anchor_x = p[0].snapped_x;
+    plane.anchor_y = p[0].snapped_y;
+    plane.ddx = (dz1 * dy2 - dz2 * dy1) * inverse;
+    plane.ddy = (dz2 * dx1 - dz1 * dx2) * inverse;
+    plane.depth =
+        (z[0] + plane.ddy * (to_float(p[0].snapped_y) - p[0].y)) + plane.ddx * (to_float(p[0].snapped_x) - p[0].x);
     plane.lowest = min(min(z[0], z[1]), z[2]);
     plane.highest = max(max(z[0], z[1]), z[2]);
     return plane;

@@ -132,12 +132,12 @@ void setup_triangle(const InstanceView& instance, std::uint32_t index, const Pro
         setup_clipped(projection, t);
         return;
     }
-    Vec2T<std::int32_t> p[3];
+    PictureVertex<float> p[3];
     float z[3];
     for (int i = 0; i < 3; ++i) {
-        p[i] = snap(t.vertices[i], projection.width, projection.height);
+        p[i] = to_picture(t.vertices[i], projection.width, projection.height);
         z[i] = t.vertices[i].z / t.vertices[i].w;
-        t.polygon.push_back({p[i].x, p[i].y});
+        t.polygon.push_back({p[i].snapped_x, p[i].snapped_y});
     }
     const std::int64_t area = twice_area(t.polygon[0], t.polygon[1], t.polygon[2]);
     if (area == 0) {
@@ -146,7 +146,7 @@ void setup_triangle(const InstanceView& instance, std::uint32_t index, const Pro
     }
     t.kind = TriangleSetup::Kind::kPlain;
     t.orientation = area < 0 ? 1.0f : -1.0f;
-    t.depth = depth_plane<float>(p, z, static_cast<float>(area));
+    t.depth = depth_plane(p, z);
 }
 
 }  // namespace tessera

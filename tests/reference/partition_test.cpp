@@ -56,7 +56,8 @@ Scene to_scene(const Triangulation& t, std::mt19937& random) {
     Scene scene;
     Primitive p;
     for (const Point& v : t.points) {
-        p.positions.push_back({static_cast<float>(v.x) / 256.0f - 32.0f, 32.0f - static_cast<float>(v.y) / 256.0f, -1.0f});
+        p.positions.push_back(
+            {static_cast<float>(v.x) / 256.0f - 32.0f, 32.0f - static_cast<float>(v.y) / 256.0f, -1.0f});
         p.normals.push_back({0, 0, 1});
     }
     for (Triangle tri : t.triangles) {
@@ -88,7 +89,8 @@ void expect_partition(const Triangulation& t, std::mt19937& random, SamplePositi
     std::vector<int> covered(kSide * kSide, 0);
     for (const Fragment& f : v.transparent) ++covered[f.pixel];
     for (std::size_t i = 0; i < covered.size(); ++i)
-        ASSERT_EQ(covered[i], 1) << "pixel " << i % kSide << ", " << i / kSide << " of " << t.triangles.size() << " triangles";
+        ASSERT_EQ(covered[i], 1) << "pixel " << i % kSide << ", " << i / kSide << " of " << t.triangles.size()
+                                 << " triangles";
 }
 
 // The kinds of places where a fill rule can go wrong.
@@ -98,11 +100,16 @@ Point random_point(std::mt19937& random, std::int64_t margin) {
     };
     const std::int64_t last = 256 * kSide;
     switch (random() % 5) {
-        case 0: return {256 * within(0, kSide - 1) + 128, 256 * within(0, kSide - 1) + 128};  // pixel centres
-        case 1: return {256 * within(0, kSide), 256 * within(0, kSide)};                      // pixel corners
-        case 2: return {within(0, last), 256 * within(0, kSide - 1) + 128};                   // rows of centres
-        case 3: return {within(-margin, last + margin), within(-margin, last + margin)};
-        default: return {within(0, last), within(0, last)};
+        case 0:
+            return {256 * within(0, kSide - 1) + 128, 256 * within(0, kSide - 1) + 128};  // pixel centres
+        case 1:
+            return {256 * within(0, kSide), 256 * within(0, kSide)};  // pixel corners
+        case 2:
+            return {within(0, last), 256 * within(0, kSide - 1) + 128};  // rows of centres
+        case 3:
+            return {within(-margin, last + margin), within(-margin, last + margin)};
+        default:
+            return {within(0, last), within(0, last)};
     }
 }
 
@@ -121,8 +128,9 @@ TEST_P(Partition, RAS4_RandomTriangulationsCoverEverySampleOnce) {
             const Point p = random_point(random, margin);
             if (std::find(t.points.begin(), t.points.end(), p) == t.points.end()) t.insert(p);
         }
-        const SamplePosition offset = random() % 2 ? SamplePosition{128, 128}
-                                                   : SamplePosition{static_cast<int>(random() % 256), static_cast<int>(random() % 256)};
+        const SamplePosition offset =
+            random() % 2 ? SamplePosition{128, 128}
+                         : SamplePosition{static_cast<int>(random() % 256), static_cast<int>(random() % 256)};
         expect_partition(t, random, offset);
         if (HasFatalFailure()) return;
     }

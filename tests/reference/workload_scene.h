@@ -55,6 +55,8 @@ inline View look(Vec3 eye, Vec3 target) {
     return view;
 }
 
-inline RunControl no_control() { return {[](double) {}, std::size_t{1} << 24}; }
+inline RunControl no_control() {
+    return {[](double) {}, std::size_t{1} << 24};
+}
 
 }  // namespace tessera::test
