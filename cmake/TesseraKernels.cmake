@@ -30,6 +30,7 @@ function(tessera_kernels target)
     target_compile_definitions(${library} PRIVATE
       TESSERA_ISA_NAMESPACE=${isa} TESSERA_SIMD_LANES=${TESSERA_ISA_LANES_${isa}})
     target_link_libraries(${library} PRIVATE tessera_flags)
+    target_include_directories(${library} PRIVATE $<TARGET_PROPERTY:${target},INCLUDE_DIRECTORIES>)
     if(NOT isa STREQUAL scalar)
       target_include_directories(${library} SYSTEM PRIVATE ${TESSERA_HIGHWAY_INCLUDE_DIR})
       set_property(GLOBAL APPEND PROPERTY TESSERA_KERNEL_LIBRARIES ${library})

@@ -1,7 +1,4 @@
 tessera_kernels(${target} ${CMAKE_CURRENT_SOURCE_DIR}/simd/operations.simd.cpp)
-foreach(isa ${TESSERA_ISAS})
-  target_include_directories(${target}_${isa} PRIVATE ${CMAKE_CURRENT_SOURCE_DIR})
-endforeach()
 
 # Sanitizers add weak symbols of their own.
 if(NOT TESSERA_SANITIZE AND NOT TESSERA_ISAS STREQUAL "scalar")
