@@ -46,7 +46,9 @@ int main() {
                                                       {"spheres, grain", grainy(spheres)},
                                                       {"noise", test::noise_picture(1920, 1080)},
                                                       {"flat", test::flat_picture(1920, 1080, 30, 60, 90)}};
-    for (const auto& [name, image] : pictures) {
+    for (const auto& picture : pictures) {
+        const char* name = picture.first;
+        const Image& image = picture.second;
         for (const int threads : {1, 2}) {
             Arena arena(threads);
             for (const int level : {1, 6}) {
