@@ -16,6 +16,7 @@
 #include <thread>
 #include <vector>
 #else
+#include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 #endif
@@ -99,6 +100,10 @@ void Arena::for_each(std::size_t count, const std::function<void(std::size_t)>& 
 
 Arena::Arena(int threads) : threads_(threads > 0 ? threads : available_threads()) {
 #if !defined(TESSERA_STD_THREADS)
+    // More than oneTBB may use here (processors, or a limit that the host has set) would make it print
+    // a warning and change nothing.
+    const std::size_t most = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
+    threads_ = std::min(threads_, static_cast<int>(std::min<std::size_t>(most, 4096)));
     impl_ = std::make_unique<Impl>(threads_);
 #endif
 }
