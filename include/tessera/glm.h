@@ -1,6 +1,6 @@
-// Conversions between Tessera's plain types and GLM's, for programs that use GLM (Tessera itself
-// does not need this header, and tessera.h does not include it). Both store matrices by columns.
-// glm::make_quat order and configuration macros do not matter: components are named.
+// Conversions between Tessera's plain types and GLM's (float), for programs that use GLM. Optional:
+// tessera.h does not include it, and the library's interface does not need GLM. Both store matrices by
+// columns; quaternions are converted by component name, whatever GLM's storage order is.
 #pragma once
 
 #include <tessera/types.h>

@@ -199,17 +199,32 @@ TEST(Geometry, GEO_TangentsWeldMinusZero) {
     EXPECT_EQ(weld_vertices(positions, normals, {}), (Indices{0, 0, 2, 3}));
 }
 
-TEST(Geometry, GEO_DegenerateTrianglesBorrowTangents) {
+TEST(Geometry, GEO_DegenerateTrianglesBorrowTangentsAndCutNothing) {
     TestMesh mesh = wavy_grid(4, false);
     const std::vector<Vec4> before = mesh.tangents();
-    const std::size_t regular = mesh.corners.size();
-    mesh.corners.insert(mesh.corners.end(), {7, 7, 8, 12, 12, 12});
+    const Indices regular = mesh.corners;
+    // In front, where they would be the first to claim the edges from 7 to 6 and 8, and cut its ring.
+    const Indices degenerate{7, 7, 8, 7, 7, 6, 12, 12, 12};
+    mesh.corners.insert(mesh.corners.begin(), degenerate.begin(), degenerate.end());
     const std::vector<Vec4> after = mesh.tangents();
-    for (std::size_t c = 0; c < regular; ++c) EXPECT_EQ(after[c], before[c]);
-    for (std::size_t c = regular; c < after.size(); ++c) {
-        const auto like = std::find(mesh.corners.begin(), mesh.corners.end(), mesh.corners[c]) - mesh.corners.begin();
+    for (std::size_t c = 0; c < regular.size(); ++c) EXPECT_EQ(after[c + degenerate.size()], before[c]);
+    for (std::size_t c = 0; c < degenerate.size(); ++c) {
+        const auto like = std::find(regular.begin(), regular.end(), degenerate[c]) - regular.begin();
         EXPECT_EQ(after[c], before[static_cast<std::size_t>(like)]);
     }
+}
+
+TEST(Geometry, GEO_TrianglesWithoutATangentTakeTheOrientationOfOthers) {
+    // The first triangle is a line along x on which only v changes with the place: it has no dP/du. Its
+    // uv area has the other sign than the second's, and yet it takes that one's tangents.
+    const TestMesh mesh{{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {0, 1, 0}},
+                        {4, Vec3{0, 0, 1}},
+                        {{0, 0}, {0, 1}, {-1, 2}, {-1, 0}},
+                        {0, 1, 2, 1, 0, 3}};
+    const std::vector<Vec4> tangents = mesh.tangents();
+    expect_valid(mesh, tangents);
+    EXPECT_EQ(tangents[0], tangents[4]);
+    EXPECT_EQ(tangents[1], tangents[3]);
 }
 
 TEST(Geometry, GEO_TrianglesWithoutMappingJoinTheirNeighbours) {

@@ -4,9 +4,6 @@
 
 #include <tessera/transform.h>
 
-#include <glm/gtc/constants.hpp>
-#include <glm/vec3.hpp>
-
 namespace tessera {
 namespace {
 
