@@ -1,11 +1,10 @@
 // Writing PNG. The picture is cut into strips whose height depends on the picture alone, so that the
 // bytes are the same for every number of threads. At the fast levels each strip is filtered and
-// deflated by a task of its own and becomes one IDAT chunk; its deflate blocks end at a byte border
-// without the final mark, so the strips join to one stream. The higher levels filter in parallel and
-// deflate the whole stream at once, for size.
+// deflated by a task of its own (zlib, whose flush ends a strip at a byte border without the final
+// mark, so that the strips join to one stream) and becomes one IDAT chunk. The higher levels filter in
+// parallel and deflate the whole stream at once with libdeflate, for size.
 #include "core/parallel.h"
 #include "image/codecs.h"
-#include "image/deflate.h"
 #include "image/png_filter.h"
 
 #include <tessera/error.h>
@@ -26,7 +25,7 @@ using Bytes = std::vector<std::uint8_t>;
 
 // About as many filtered bytes per strip: enough for a good Huffman code, few enough to share out.
 constexpr std::size_t kStripBytes = std::size_t{192} << 10;
-// Up to this level strips are deflated in parallel by our own code; above, libdeflate takes the whole.
+// Up to this level strips are deflated in parallel; above, libdeflate takes the whole.
 constexpr int kLastFastLevel = 1;
 
 struct Layout {
@@ -119,6 +118,24 @@ Bytes make_chunk(const char* type, std::span<const std::uint8_t> data) {
     return chunk;
 }
 
+// Appends one strip as deflate blocks that end at a byte border. Run lengths and Huffman codes only
+// (Z_RLE): on filtered rows nearly as small as level 1's matches, and several times as fast.
+void deflate_strip(const Bytes& in, int level, Bytes& out) {
+    z_stream stream{};
+    if (deflateInit2(&stream, level, Z_DEFLATED, -15, 9, Z_RLE) != Z_OK) throw_memory();
+    const std::size_t before = out.size();
+    out.resize(before + deflateBound(&stream, static_cast<uLong>(in.size())) + 16);
+    stream.next_in = const_cast<Bytef*>(in.data());
+    stream.avail_in = static_cast<uInt>(in.size());
+    stream.next_out = out.data() + before;
+    stream.avail_out = static_cast<uInt>(out.size() - before);
+    const int status = deflate(&stream, Z_SYNC_FLUSH);
+    const bool complete = status == Z_OK && stream.avail_in == 0 && stream.avail_out > 0;
+    out.resize(out.size() - stream.avail_out);
+    deflateEnd(&stream);
+    if (!complete) throw Error(ErrorCode::kInternal, "deflate failed");
+}
+
 // The zlib wrapper (RFC 1950): two bytes before the stream, the Adler-32 of the plain bytes after it.
 constexpr std::array<std::uint8_t, 2> kZlibHeader{0x78, 0x01};
 
@@ -131,19 +148,14 @@ std::vector<Bytes> fast_data(const Image& image, const Layout& l, int level, Are
         sums[strip] = libdeflate_adler32(1, filtered.data(), filtered.size());
         Bytes data;
         if (strip == 0) data.assign(kZlibHeader.begin(), kZlibHeader.end());
-        if (level == 0)
-            deflate_stored(filtered, data);
-        else
-            deflate_fast(filtered, l.pixel_bytes, data);
+        deflate_strip(filtered, level, data);
         chunks[strip] = make_chunk("IDAT", data);
     });
     uLong sum = 1;
     for (std::size_t strip = 0; strip < l.strips; ++strip)
         sum = adler32_combine(sum, sums[strip], static_cast<z_off_t>(filtered_bytes(l, strip)));
-    Bytes tail;
-    deflate_end(tail);
-    tail.resize(tail.size() + 4);
-    put_big_endian(&tail[tail.size() - 4], static_cast<std::uint32_t>(sum));
+    Bytes tail{0x03, 0x00, 0, 0, 0, 0};  // an empty final block, then the checksum
+    put_big_endian(&tail[2], static_cast<std::uint32_t>(sum));
     chunks.back() = make_chunk("IDAT", tail);
     return chunks;
 }
