@@ -27,8 +27,8 @@ struct Sampler {
 // the texture slot that uses them: sRGB for base colour and emission, linear for the others.
 struct Picture {
     std::string name, uri;
-    std::shared_ptr<const Image> pixels;
-    std::string extras;  // raw JSON, "" when absent; the same for every `extras` below
+    std::shared_ptr<const Image> pixels;  // null: not loaded; the texture is then left out
+    std::string extras;                   // raw JSON, "" when absent; the same for every `extras` below
 };
 
 struct Texture {

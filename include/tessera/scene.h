@@ -137,6 +137,8 @@ struct Animation {
     std::string extras;
 };
 
+// What one scene draws: these nodes and their descendants. A listed node may have a parent, whose
+// placement then does not count; none may be listed twice or below another.
 struct SceneRoots {
     std::string name;
     std::vector<int> nodes;

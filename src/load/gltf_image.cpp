@@ -2,8 +2,11 @@
 // in parallel. Only pictures that a material uses are read.
 #include "core/parallel.h"
 #include "load/gltf_parts.h"
+#include "load/uri.h"
 
 #include <algorithm>
+#include <exception>
+#include <memory>
 
 namespace tessera {
 namespace {
@@ -64,6 +67,7 @@ struct PictureJob {
     Bytes owned;
     std::span<const std::byte> bytes;
     std::shared_ptr<Image> pixels;
+    std::exception_ptr failure;
 };
 
 bool begins_with(std::span<const std::byte> bytes, std::string_view magic) {
@@ -81,7 +85,7 @@ std::string_view foreign_format(std::span<const std::byte> bytes) {
 }
 
 PictureJob gather(GltfDocument& document, std::size_t index) {
-    PictureJob job{index, document.item(GltfArray::kImages, index), {}, {}, {}};
+    PictureJob job{index, document.item(GltfArray::kImages, index), {}, {}, {}, {}};
     if (const std::optional<Json> uri = job.json.find("uri")) {
         job.owned = document.read_uri(*uri);
         job.bytes = job.owned.span();
@@ -150,7 +154,7 @@ void read_textures(GltfDocument& document, Scene& scene) {
         picture.name = json.string_or("name");
         picture.extras = json.raw_or_empty("extras");
         const std::optional<Json> uri = json.find("uri");
-        if (uri && !uri->string().starts_with("data:")) picture.uri = uri->string();
+        if (uri && !is_data_uri(uri->string())) picture.uri = uri->string();
     });
 }
 
@@ -173,10 +177,17 @@ void read_pictures(GltfDocument& document, Scene& scene) {
     Arena arena(context.options().threads);
     arena.for_each(jobs.size(), [&](std::size_t i) {
         PictureJob& job = jobs[i];
-        job.pixels = with_place(job.json, [&] {
-            return std::make_shared<Image>(decode_image(job.bytes, context.options().max_pixels, true));
-        });
+        try {
+            job.pixels = with_place(job.json, [&] {
+                return std::make_shared<Image>(decode_image(job.bytes, context.options().max_pixels, true));
+            });
+        } catch (...) {
+            job.failure = std::current_exception();
+        }
     });
+    // Of several failures the first in the file is reported, whichever thread was faster.
+    for (const PictureJob& job : jobs)
+        if (job.failure) std::rethrow_exception(job.failure);
     for (PictureJob& job : jobs) scene.pictures[job.picture].pixels = std::move(job.pixels);
 }
 
