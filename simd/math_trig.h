@@ -126,7 +126,7 @@ template <class F>
 TESSERA_INLINE F cos(F x) {
     return sincos(x).cos;
 }
-// Error (1.0, 1.0).
+// Error (1.1, 1.1).
 template <class F>
 TESSERA_INLINE F tan(F x) {
     const Reduced<F> reduced = reduce(x);

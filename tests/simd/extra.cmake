@@ -10,3 +10,8 @@ if(NOT TESSERA_SANITIZE AND NOT TESSERA_ISAS STREQUAL "scalar")
   set_tests_properties(kernel_symbols.finds_a_leak PROPERTIES
     PASS_REGULAR_EXPRESSION "weak symbols outside the namespaces of avx2:[ \n]*_ZN7tessera19shared_between_isasEf")
 endif()
+
+# The recorded bits once more, with the C library's fused and AVX2 paths switched off.
+add_test(NAME simd.bits_without_glibc_fma COMMAND ${target} --gtest_filter=OperationsHash.*)
+set_tests_properties(simd.bits_without_glibc_fma PROPERTIES
+  ENVIRONMENT "GLIBC_TUNABLES=glibc.cpu.hwcaps=-AVX2,-FMA,-FMA4,-AVX512F")

@@ -1,7 +1,7 @@
 // The elementary functions against their definitions: maximum errors over dense samples (for float the
 // oracle is the C library in double, for double in long double), special values, and order. With
-// TESSERA_EXHAUSTIVE=1 in the environment the float functions of one argument are tested on all 2^32
-// values. Bits on vectors are the subject of operations_test.cpp.
+// TESSERA_EXHAUSTIVE=n in the environment the float functions of one argument are tested on every n-th of
+// the 2^32 values (1: all of them, about an hour). Bits on vectors are the subject of operations_test.cpp.
 #include "simd/math.h"
 
 #include <gtest/gtest.h>
@@ -65,8 +65,9 @@ class MathTest : public testing::Test {
         };
         for (const Sampler& sampler : samplers)
             for (int i = 0; i < 100'000; ++i) check(sampler());
-        if (std::is_same_v<T, float> && std::getenv("TESSERA_EXHAUSTIVE") != nullptr)
-            for (std::uint64_t bits = 0; bits >> 32 == 0; ++bits)
+        const char* exhaustive = std::getenv("TESSERA_EXHAUSTIVE");
+        if (const auto step = exhaustive != nullptr ? std::strtoull(exhaustive, nullptr, 10) : 0; kFloat && step > 0)
+            for (std::uint64_t bits = 0; bits >> 32 == 0; bits += step)
                 if (const T x = as_float(static_cast<UintOf<T>>(bits)); std::isfinite(x)) check(x);
         EXPECT_LE(worst, bound) << name << " at " << std::hexfloat << at;
         this->RecordProperty(std::string(name) + "_ulp", std::to_string(worst));
@@ -149,7 +150,7 @@ TYPED_TEST(MathTest, TrigonometryStaysWithinItsErrors) {
                    this->uniform(-fast, fast), this->uniform(-1e9, 1e9), this->any_finite()};
     unary(0.85, angles, TESSERA_UNARY(sin));
     unary(0.85, angles, TESSERA_UNARY(cos));
-    unary(1.0, angles, TESSERA_UNARY(tan));
+    unary(1.1, angles, TESSERA_UNARY(tan));
     unary(1.65, S{this->uniform(-1, 1), this->any_finite()}, TESSERA_UNARY(asin));
     unary(1.15, S{this->uniform(-1, 1), this->any_finite()}, TESSERA_UNARY(acos));
     unary(1.9, S{this->uniform(-1, 1), this->uniform(-10, 10), this->any_finite()}, TESSERA_UNARY(atan));
@@ -165,7 +166,7 @@ TYPED_TEST(MathTest, ReductionHoldsNearMultiplesOfAQuarterTurn) {
         const T x = static_cast<T>(exact);
         ASSERT_LE(error_in_ulp(math::sin(x), std::sin(static_cast<W>(x))), 0.85) << k;
         ASSERT_LE(error_in_ulp(math::cos(x), std::cos(static_cast<W>(x))), 0.85) << k;
-        ASSERT_LE(error_in_ulp(math::tan(-x), std::tan(static_cast<W>(-x))), 1.0) << k;
+        ASSERT_LE(error_in_ulp(math::tan(-x), std::tan(static_cast<W>(-x))), 1.1) << k;
     }
 }
 
