@@ -1,6 +1,7 @@
 #include "reference/bvh.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -97,11 +98,12 @@ void Bvh::traverse(const CastRay& ray, double t_min, double t_max,
     if (nodes_.empty()) return;
     // Distance along the ray to a box (the slabs of Kay and Kajiya 1986), widened against rounding;
     // infinite for a miss.
+    const glm::dvec3 inverse{1.0 / ray.direction.x, 1.0 / ray.direction.y, 1.0 / ray.direction.z};
     const auto entry = [&](const Box& box) {
         double enter = t_min, leave = t_max;
         for (int axis = 0; axis < 3; ++axis) {
-            const double inverse = 1.0 / ray.direction[axis];
-            double a = (box.min[axis] - ray.origin[axis]) * inverse, b = (box.max[axis] - ray.origin[axis]) * inverse;
+            double a = (box.min[axis] - ray.origin[axis]) * inverse[axis];
+            double b = (box.max[axis] - ray.origin[axis]) * inverse[axis];
             if (a > b) std::swap(a, b);
             // A ray within a slab's own plane gives NaN: such a slab decides nothing.
             if (a == a) enter = std::max(enter, a - 1e-12 * std::fabs(a));
@@ -109,18 +111,18 @@ void Bvh::traverse(const CastRay& ray, double t_min, double t_max,
         }
         return enter <= leave ? enter : std::numeric_limits<double>::infinity();
     };
-    std::vector<std::uint32_t> open;
-    open.reserve(64);
-    open.push_back(0);
-    while (!open.empty()) {
-        const Node& node = nodes_[open.back()];
-        open.pop_back();
+    // Halving 2^32 triangles gives a tree of at most 33 levels, each of which leaves one node open.
+    std::array<std::uint32_t, 64> open;
+    std::size_t depth = 0;
+    open[depth++] = 0;
+    while (depth > 0) {
+        const Node& node = nodes_[open[--depth]];
         if (!(entry(node.box) <= t_max)) continue;
         if (node.count == 0) {
             const std::uint32_t a = node.first, b = node.first + 1;
             const bool a_first = entry(nodes_[a].box) <= entry(nodes_[b].box);
-            open.push_back(a_first ? b : a);
-            open.push_back(a_first ? a : b);
+            open[depth++] = a_first ? b : a;
+            open[depth++] = a_first ? a : b;
             continue;
         }
         for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
