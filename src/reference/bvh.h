@@ -1,6 +1,6 @@
 // A plain bounding volume hierarchy over the triangles of a frame in camera space, double precision:
-// boxes split at the median of their longest axis, leaves of a few triangles. And the intersection
-// test that both it and brute force use.
+// split by the surface area heuristic, leaves of a few triangles. And the intersection test that both
+// it and brute force use.
 #pragma once
 
 #include "geometry/frame.h"
@@ -9,6 +9,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -44,13 +45,17 @@ class Bvh {
 
   private:
     struct Box {
-        glm::dvec3 min, max;
+        glm::dvec3 min{std::numeric_limits<double>::infinity()}, max{-std::numeric_limits<double>::infinity()};
+        void add(const glm::dvec3& p);
+        void add(const Box& b);
+        double area() const;  // half of the surface
     };
     struct Node {
         Box box;
         std::uint32_t first, count;  // leaf: range of order_; inner: count 0, children first and first + 1
     };
     Box box_of(std::uint32_t first, std::uint32_t count) const;
+    std::uint32_t partition(const Node& node, int depth);
     void build();
 
     std::vector<glm::dvec3> vertices_;  // three per triangle, by number
