@@ -45,8 +45,8 @@ struct RenderOptions {
     Engine engine = Engine::kReferenceRaster;
     View view;
     Lighting lighting = Lighting::kAuto;
-    // Uniform ambient radiance; unset: the studio's own, or a twentieth of the exposed white for a
-    // scene's lights.
+    // Uniform ambient radiance; unset: the scene's, else the studio's own, or a twentieth of the exposed
+    // white for a scene's lights.
     std::optional<float> ambient;
     bool shadows = true;               // hard shadows where the engine has them
     int samples = 4;                   // per pixel, 1 .. 256, at fixed positions of 1/256 pixel

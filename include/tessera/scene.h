@@ -159,6 +159,9 @@ struct Scene {
     std::vector<SceneRoots> scenes;
     int active_scene = 0;  // kNone: nothing is drawn
 
+    // Ambient radiance (the textbooks' Ia); unset: what RenderOptions says.
+    std::optional<Vec3> ambient;
+
     std::string generator, copyright, extras;
     std::vector<std::string> extensions_used, extensions_required, extensions_ignored;
     std::vector<std::string> warnings;  // what loading had to say, one line each

@@ -1,4 +1,4 @@
-// Cameras, and the lights of KHR_lights_punctual.
+// Cameras, and the lights of KHR_lights_punctual and TESSERA_lights.
 #include "load/gltf_parts.h"
 
 namespace tessera {
@@ -53,6 +53,24 @@ void read_spot(LoadContext& context, const Json& json, Light& light) {
                                                              : light.inner_cone;
 }
 
+// The lights of the textbooks: TESSERA_lights on a light.
+void read_textbook_light(LoadContext& context, const Json& json, Light& light) {
+    const std::optional<Json> extension = find_extension(json, "TESSERA_lights");
+    if (!extension) return;
+    if (const std::optional<Json> falloff = extension->find("falloff")) {
+        if (falloff->string() == "constant")
+            light.falloff = LightFalloff::kConstant;
+        else if (falloff->string() != "inverse-square")
+            context.warn(falloff->place() + ": unknown falloff, inverse-square is taken");
+    }
+    if (const std::optional<Json> profile = extension->find("spotProfile")) {
+        if (profile->string() == "axis")
+            light.spot_profile = SpotProfile::kAxis;
+        else if (profile->string() != "cones")
+            context.warn(profile->place() + ": unknown spot profile, cones is taken");
+    }
+}
+
 // Empty for a type that is not known.
 std::optional<Light> read_light(GltfDocument& document, const Json& json) {
     LoadContext& context = document.context();
@@ -72,6 +90,7 @@ std::optional<Light> read_light(GltfDocument& document, const Json& json) {
         context.warn(type.place() + ": lights of type " + type.raw() + " are ignored");
         return std::nullopt;
     }
+    read_textbook_light(context, json, light);
     json.numbers_or_keep("color", {&light.color.x, 3});
     light.intensity = json.number_or("intensity", light.intensity);
     if (light.intensity < 0) {
@@ -97,6 +116,15 @@ void read_cameras(GltfDocument& document, Scene& scene) {
 
 std::vector<int> read_lights(GltfDocument& document, Scene& scene) {
     std::vector<int> numbers;
+    if (const std::optional<Json> ours = find_extension(document.root(), "TESSERA_lights"))
+        if (const std::optional<Json> ambient = ours->find("ambient")) {
+            Vec3 radiance;
+            ambient->numbers({&radiance.x, 3});
+            if (radiance.x >= 0 && radiance.y >= 0 && radiance.z >= 0)
+                scene.ambient = radiance;
+            else
+                document.context().warn(ambient->place() + ": negative ambient light is ignored");
+        }
     const std::optional<Json> extension = find_extension(document.root(), "KHR_lights_punctual");
     if (!extension) return numbers;
     if (const std::optional<Json> lights = extension->find("lights"))

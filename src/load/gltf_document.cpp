@@ -11,9 +11,10 @@ constexpr std::array<std::string_view, static_cast<std::size_t>(GltfArray::kCoun
     "accessors", "animations", "buffers",  "bufferViews", "cameras", "images",  "materials",
     "meshes",    "nodes",      "samplers", "scenes",      "skins",   "textures"};
 
-constexpr std::array<std::string_view, 6> kKnownExtensions = {
+constexpr std::array<std::string_view, 7> kKnownExtensions = {
     "KHR_lights_punctual",   "KHR_materials_unlit",   "KHR_materials_emissive_strength",
-    "KHR_texture_transform", "KHR_mesh_quantization", "TESSERA_materials_phong"};
+    "KHR_texture_transform", "KHR_mesh_quantization", "TESSERA_materials_phong",
+    "TESSERA_lights"};
 
 // What parsing `json` takes: a padded copy and the strings are at most as long as the text, and each
 // structural character costs up to three 8-byte words of tape and index.

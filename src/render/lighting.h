@@ -17,7 +17,7 @@ std::vector<LightView> scene_lights(const Scene& scene, const Frame& frame);
 // Key, fill and rim light, directional and fixed to the camera, for an exposure of 1.
 std::vector<LightView> studio_lights();
 AmbientView studio_ambient();
-AmbientView uniform_ambient(float radiance);
+AmbientView uniform_ambient(Vec3 radiance);
 
 // Incident-light metering: the light that falls on what the camera sees, not what is reflected, so
 // that dark things stay dark and the result depends on no engine. Some thousand points of the visible

@@ -6,8 +6,8 @@
 #include "core/fp_environment.h"
 #include "core/sampling.h"
 #include "reference/engine.h"
-#include "render/options.h"
 #include "render/canvas.h"
+#include "render/options.h"
 #include "render/shading_scene.h"
 #include "render/stopwatch.h"
 

@@ -147,8 +147,16 @@ ShadingScene::ShadingScene(const Scene& scene, const Frame& frame, const RenderO
     else
         exposure_ = studio ? 1.0 : metered_exposure(frame, context_);
     context_.unlit_scale = static_cast<float>(1.0 / exposure_);
-    context_.ambient = studio ? studio_ambient() : uniform_ambient(static_cast<float>(kDefaultAmbient / exposure_));
-    if (options.ambient) context_.ambient = uniform_ambient(*options.ambient);
+    const auto grey = [](double radiance) {
+        const auto r = static_cast<float>(radiance);
+        return uniform_ambient({r, r, r});
+    };
+    if (options.ambient)
+        context_.ambient = grey(static_cast<double>(*options.ambient));
+    else if (scene.ambient)
+        context_.ambient = uniform_ambient(*scene.ambient);
+    else
+        context_.ambient = studio ? studio_ambient() : grey(kDefaultAmbient / exposure_);
 }
 
 }  // namespace tessera

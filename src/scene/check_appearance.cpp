@@ -54,6 +54,10 @@ void check_material(const Scene& scene, const Material& m, const Place& place) {
 }  // namespace
 
 void check_appearance(const Scene& scene) {
+    if (scene.ambient) {
+        const float values[] = {scene.ambient->x, scene.ambient->y, scene.ambient->z};
+        Place{nullptr, "ambient", 0}.finite(values, std::size(values));
+    }
     for (std::size_t i = 0; i < scene.cameras.size(); ++i) check_camera(scene.cameras[i], Place{nullptr, "cameras", i});
     for (std::size_t i = 0; i < scene.lights.size(); ++i) check_light(scene.lights[i], Place{nullptr, "lights", i});
     for (std::size_t i = 0; i < scene.materials.size(); ++i)
