@@ -4,6 +4,10 @@ target_compile_features(tessera_flags INTERFACE cxx_std_20)
 # No contraction to fused multiply-add and no assumption about floating point: the bits are the contract.
 target_compile_options(tessera_flags INTERFACE -ffp-contract=off -fno-fast-math
   -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion)
+# Templates over the number type combine masks with & and |, which are plain bools in the one-lane case.
+if(CMAKE_CXX_COMPILER_ID MATCHES Clang)
+  target_compile_options(tessera_flags INTERFACE -Wno-bitwise-instead-of-logical)
+endif()
 if(TESSERA_WERROR)
   target_compile_options(tessera_flags INTERFACE -Werror)
 endif()

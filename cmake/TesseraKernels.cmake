@@ -24,9 +24,7 @@ function(tessera_kernels target)
     add_library(${library} OBJECT ${ARGN})
     # Optimised in every configuration: without inlining Highway leaves symbols that its instruction
     # sets share, and the kernels crawl.
-    # One-lane masks are bool, and & on them is meant.
-    target_compile_options(${library} PRIVATE ${TESSERA_ISA_FLAGS_${isa}} $<$<CONFIG:Debug>:-O2>
-      $<$<CXX_COMPILER_ID:Clang>:-Wno-bitwise-instead-of-logical>)
+    target_compile_options(${library} PRIVATE ${TESSERA_ISA_FLAGS_${isa}} $<$<CONFIG:Debug>:-O2>)
     target_compile_definitions(${library} PRIVATE
       TESSERA_ISA_NAMESPACE=${isa} TESSERA_SIMD_LANES=${TESSERA_ISA_LANES_${isa}})
     target_link_libraries(${library} PRIVATE tessera_flags)

@@ -116,7 +116,7 @@ void add_render_options(CLI::App& app, RenderArguments& a) {
     option("Camera", "--target", a.target, "X,Y,Z", "look at this point (default: the middle of the scene)");
     option("Camera", "--up", a.up, "y|z|X,Y,Z",
            "y (default), z for files whose up axis is Z, or the camera's up direction");
-    option("Camera", "--fov", a.fov, "DEGREES", "vertical field of view (default 45)");
+    option("Camera", "--fov", a.fov, "DEGREES", "vertical field of view (default 35)");
 
     option("Light", "--lighting", a.lighting, "NAME", "auto (default), scene (only its own lights) or studio");
     option("Light", "--ambient", a.ambient, "X", "uniform ambient radiance");
@@ -124,7 +124,6 @@ void add_render_options(CLI::App& app, RenderArguments& a) {
 
     option("Machine", "--threads", a.threads, "N", "threads to use (default: all this process may)");
     option("Machine", "--isa", a.isa, "NAME", "auto (default), scalar, sse4, avx2 or avx512; the picture is the same");
-    option("Machine", "--seed", a.seed, "N", "seed of random sampling (the reference engines use fixed samples)");
 
     option("Limits", "--max-triangles", a.max_triangles, "N", "refuse scenes with more (default 67108864)");
     option("Limits", "--max-pixels", a.max_pixels, "N", "refuse larger textures or pictures (default 268435456)");
@@ -172,7 +171,6 @@ RenderJob parse_render_arguments(const RenderArguments& a) {
 
     if (!a.threads.empty()) render.threads = static_cast<int>(parse_integer("--threads", a.threads, 1, 1024));
     render.isa = parse_isa(a.isa);
-    parse_integer("--seed", a.seed, 0, INT64_MAX);
 
     job.load.threads = render.threads;
     if (!a.max_triangles.empty())

@@ -19,7 +19,7 @@ struct RenderArguments {
     std::string camera, eye, target, up = "y", fov;
     std::string background = "white", exposure = "auto", tone_map = "neutral", color_bits;
     std::string lighting = "auto", ambient;
-    std::string threads, isa = "auto", seed = "0", quality = "92", png_level = "1";
+    std::string threads, isa = "auto", quality = "92", png_level = "1";
     std::string max_triangles, max_pixels, max_memory, timeout;
     bool no_shadows = false, quiet = false;
 };

@@ -51,6 +51,11 @@ Vec3 turn_z_up(Vec3 p) { return {p.x, p.z, -p.y}; }
 void turn_z_up(Scene& scene) {
     if (scene.active_scene == kNone || scene.scenes.empty()) return;
     SceneRoots& active = scene.scenes[static_cast<std::size_t>(scene.active_scene)];
+    // A root may hang below a node that is not drawn; the new parent is to be its only one.
+    const auto is_root = [&](int node) {
+        return std::find(active.nodes.begin(), active.nodes.end(), node) != active.nodes.end();
+    };
+    for (Node& node : scene.nodes) std::erase_if(node.children, is_root);
     Node turn;
     turn.name = "Z up";
     turn.matrix = Mat4{{1, 0, 0, 0, 0, 0, -1, 0, 0, 1, 0, 0, 0, 0, 0, 1}};

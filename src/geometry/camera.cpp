@@ -13,8 +13,8 @@ namespace {
 
 constexpr double kDefaultFov = 0.61086523819801536;  // 35 degrees
 // Three-quarter view: from the front right, a little above.
-constexpr double kAzimuth = 0.61086523819801536;     // 35 degrees
-constexpr double kElevation = 0.41887902047863912;   // 24 degrees
+constexpr double kAzimuth = 0.61086523819801536;    // 35 degrees
+constexpr double kElevation = 0.41887902047863912;  // 24 degrees
 constexpr double kMargin = 1.12;                    // of the picture around the framed points
 
 glm::dvec3 column(const glm::dmat4& m, int i) { return {m[i].x, m[i].y, m[i].z}; }

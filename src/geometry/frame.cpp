@@ -8,7 +8,10 @@
 #include "geometry/tangents.h"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <map>
+#include <set>
 #include <span>
 
 namespace tessera {
@@ -69,6 +72,29 @@ ProjectionView make_projection(const Camera& lens, int width, int height) {
     return p;
 }
 
+// Whether a second copy at the same place would be hidden by the first one, sample by sample.
+bool is_solid(const Scene& scene, const Primitive& p) {
+    return p.material == kNone || scene.materials[static_cast<std::size_t>(p.material)].alpha_mode != AlphaMode::kBlend;
+}
+
+// Where primitives have been placed. An exact duplicate of a solid one loses every depth test against
+// the first (equal depth, higher number), so it is dropped before it costs anything.
+class Placements {
+  public:
+    // False when the primitive was placed there before.
+    bool insert(const Primitive* primitive, const glm::dmat4& world) {
+        std::array<std::uint64_t, 17> key{};
+        key[0] = reinterpret_cast<std::uintptr_t>(primitive);
+        for (int c = 0; c < 4; ++c)
+            for (int r = 0; r < 4; ++r)
+                key[static_cast<std::size_t>(1 + 4 * c + r)] = std::bit_cast<std::uint64_t>(world[c][r]);
+        return seen_.insert(key).second;
+    }
+
+  private:
+    std::set<std::array<std::uint64_t, 17>> seen_;
+};
+
 }  // namespace
 
 PreparedMesh::PreparedMesh(Primitive&& m, const Primitive& s)
@@ -107,6 +133,7 @@ Frame make_frame(const Scene& scene, const View& view, int width, int height) {
     std::map<const Primitive*, const PreparedMesh*> prepared;
     std::uint64_t triangles = 0;
     bool skipped_mode = false;
+    Placements placements;
     for (const int index : nodes.order) {
         const Node& node = scene.nodes[static_cast<std::size_t>(index)];
         const glm::dmat4 node_to_camera = world_to_camera * nodes.world[static_cast<std::size_t>(index)];
@@ -124,6 +151,7 @@ Frame make_frame(const Scene& scene, const View& view, int width, int height) {
                 continue;
             }
             if (triangle_count(p) == 0) continue;
+            if (is_solid(scene, p) && !placements.insert(&p, nodes.world[static_cast<std::size_t>(index)])) continue;
             const PreparedMesh*& mesh = prepared[&p];
             if (!mesh) {
                 const Material* material =

@@ -46,8 +46,8 @@ struct Frame {
     const InstanceView& instance_of(std::uint32_t number) const;
 };
 
-// Evaluates the active scene for a picture of width x height pixels. Throws kUsage for views that
-// make no sense and kLimit for more than 2^32 - 2 triangles.
+// Evaluates the active scene, without exact duplicates of opaque instances, for a picture of width x height pixels.
+// Throws kUsage for views that make no sense and kLimit for more than 2^32 - 2 triangles.
 Frame make_frame(const Scene& scene, const View& view, int width, int height);
 
 // Whether the whole box lies outside one plane of the view volume (per-object frustum culling). Never

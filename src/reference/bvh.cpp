@@ -11,13 +11,10 @@ namespace {
 constexpr std::uint32_t kLeafSize = 4;
 constexpr int kDeepest = 40;
 
-double dot(const glm::dvec3& a, const glm::dvec3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-glm::dvec3 cross(const glm::dvec3& a, const glm::dvec3& b) {
-    return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
+double component(const Vec3d& v, int axis) { return axis == 0 ? v.x : (axis == 1 ? v.y : v.z); }
 
 // The camera-space position as the surface function has it, carried on in double.
-glm::dvec3 to_camera(const float* rows, const float* p) {
+Vec3d to_camera(const float* rows, const float* p) {
     const double x = p[0], y = p[1], z = p[2];
     return {rows[0] * x + rows[1] * y + rows[2] * z + rows[3], rows[4] * x + rows[5] * y + rows[6] * z + rows[7],
             rows[8] * x + rows[9] * y + rows[10] * z + rows[11]};
@@ -25,8 +22,8 @@ glm::dvec3 to_camera(const float* rows, const float* p) {
 
 }  // namespace
 
-std::optional<RayHit> intersect(const CastRay& ray, const glm::dvec3& v0, const glm::dvec3& v1, const glm::dvec3& v2) {
-    const glm::dvec3 &d = ray.direction, q0 = v0 - ray.origin, q1 = v1 - ray.origin, q2 = v2 - ray.origin;
+std::optional<RayHit> intersect(const CastRay& ray, const Vec3d& v0, const Vec3d& v1, const Vec3d& v2) {
+    const Vec3d &d = ray.direction, q0 = v0 - ray.origin, q1 = v1 - ray.origin, q2 = v2 - ray.origin;
     const double e0 = dot(d, cross(q1, q2)), e1 = dot(d, cross(q2, q0)), e2 = dot(d, cross(q0, q1));
     const bool positive = e0 >= 0 && e1 >= 0 && e2 >= 0, negative = e0 <= 0 && e1 <= 0 && e2 <= 0;
     const double sum = e0 + e1 + e2;
@@ -51,11 +48,9 @@ Bvh::Bvh(const Frame& frame, bool brute_force) {
     if (!brute_force) build();
 }
 
-void Bvh::Box::add(const glm::dvec3& p) {
-    for (int axis = 0; axis < 3; ++axis) {
-        min[axis] = std::min(min[axis], p[axis]);
-        max[axis] = std::max(max[axis], p[axis]);
-    }
+void Bvh::Box::add(const Vec3d& p) {
+    min = {std::min(min.x, p.x), std::min(min.y, p.y), std::min(min.z, p.z)};
+    max = {std::max(max.x, p.x), std::max(max.y, p.y), std::max(max.z, p.z)};
 }
 
 void Bvh::Box::add(const Box& b) {
@@ -65,7 +60,7 @@ void Bvh::Box::add(const Box& b) {
 }
 
 double Bvh::Box::area() const {
-    const glm::dvec3 e = max - min;
+    const Vec3d e = max - min;
     return min.x <= max.x ? e.x * e.y + e.y * e.z + e.z * e.x : 0.0;
 }
 
@@ -81,24 +76,20 @@ Bvh::Box Bvh::box_of(std::uint32_t first, std::uint32_t count) const {
 // middle where that finds no cut, or where the tree has grown deep.
 std::uint32_t Bvh::partition(const Node& node, int depth) {
     constexpr int kBins = 16;
-    glm::dvec3 low(std::numeric_limits<double>::infinity()), high(-low);
     const auto centre = [&](std::uint32_t t) {
-        const glm::dvec3* v = &vertices_[3 * std::size_t{t}];
+        const Vec3d* v = &vertices_[3 * std::size_t{t}];
         return v[0] + v[1] + v[2];  // three times the centroid
     };
-    for (std::uint32_t i = node.first; i < node.first + node.count; ++i)
-        for (int axis = 0; axis < 3; ++axis) {
-            const double c = centre(order_[i])[axis];
-            low[axis] = std::min(low[axis], c);
-            high[axis] = std::max(high[axis], c);
-        }
-    const glm::dvec3 extent = high - low;
+    Box centres;
+    for (std::uint32_t i = node.first; i < node.first + node.count; ++i) centres.add(centre(order_[i]));
+    const Vec3d extent = centres.max - centres.min;
     const int axis = extent.x >= extent.y && extent.x >= extent.z ? 0 : (extent.y >= extent.z ? 1 : 2);
     const auto begin = order_.begin() + node.first, end = begin + node.count;
+    const double low = component(centres.min, axis), length = component(extent, axis);
     const auto bin_of = [&](std::uint32_t t) {
-        return std::min(kBins - 1, static_cast<int>(kBins * (centre(t)[axis] - low[axis]) / extent[axis]));
+        return std::min(kBins - 1, static_cast<int>(kBins * (component(centre(t), axis) - low) / length));
     };
-    if (extent[axis] > 0 && depth < kDeepest) {
+    if (length > 0 && depth < kDeepest) {
         Box boxes[kBins];
         std::uint32_t counts[kBins] = {};
         for (auto t = begin; t != end; ++t) {
@@ -133,7 +124,7 @@ std::uint32_t Bvh::partition(const Node& node, int depth) {
     }
     const std::uint32_t half = node.count / 2;
     std::nth_element(begin, begin + half, end, [&](std::uint32_t x, std::uint32_t y) {
-        const double cx = centre(x)[axis], cy = centre(y)[axis];
+        const double cx = component(centre(x), axis), cy = component(centre(y), axis);
         return cx != cy ? cx < cy : x < y;
     });
     return half;
@@ -166,12 +157,12 @@ void Bvh::traverse(const CastRay& ray, double t_min, double t_max,
     if (nodes_.empty()) return;
     // Distance along the ray to a box (the slabs of Kay and Kajiya 1986), widened against rounding;
     // infinite for a miss.
-    const glm::dvec3 inverse{1.0 / ray.direction.x, 1.0 / ray.direction.y, 1.0 / ray.direction.z};
+    const Vec3d inverse{1.0 / ray.direction.x, 1.0 / ray.direction.y, 1.0 / ray.direction.z};
     const auto entry = [&](const Box& box) {
         double enter = t_min, leave = t_max;
         for (int axis = 0; axis < 3; ++axis) {
-            double a = (box.min[axis] - ray.origin[axis]) * inverse[axis];
-            double b = (box.max[axis] - ray.origin[axis]) * inverse[axis];
+            const double from = component(ray.origin, axis), scale = component(inverse, axis);
+            double a = (component(box.min, axis) - from) * scale, b = (component(box.max, axis) - from) * scale;
             if (a > b) std::swap(a, b);
             // A ray within a slab's own plane gives NaN: such a slab decides nothing.
             if (a == a) enter = std::max(enter, a - 1e-12 * std::fabs(a));

@@ -4,8 +4,7 @@
 #pragma once
 
 #include "geometry/frame.h"
-
-#include <glm/vec3.hpp>
+#include "shading/vectors.h"
 
 #include <cstdint>
 #include <functional>
@@ -15,8 +14,10 @@
 
 namespace tessera {
 
+using Vec3d = Vec3T<double>;
+
 struct CastRay {
-    glm::dvec3 origin, direction;  // camera space; any length above zero
+    Vec3d origin, direction;  // camera space; any length above zero
 };
 
 struct RayHit {
@@ -29,7 +30,7 @@ struct RayHit {
 // products of the ray with each edge, which two triangles that share an edge compute as exact
 // opposites: no ray slips between them (Kensler and Shirley 2006, "Optimizing ray-triangle
 // intersection via automated search"). Empty for a miss, behind the origin, degenerate or edge-on.
-std::optional<RayHit> intersect(const CastRay& ray, const glm::dvec3& v0, const glm::dvec3& v1, const glm::dvec3& v2);
+std::optional<RayHit> intersect(const CastRay& ray, const Vec3d& v0, const Vec3d& v1, const Vec3d& v2);
 
 class Bvh {
   public:
@@ -45,8 +46,9 @@ class Bvh {
 
   private:
     struct Box {
-        glm::dvec3 min{std::numeric_limits<double>::infinity()}, max{-std::numeric_limits<double>::infinity()};
-        void add(const glm::dvec3& p);
+        static constexpr double kInfinity = std::numeric_limits<double>::infinity();
+        Vec3d min{kInfinity, kInfinity, kInfinity}, max{-kInfinity, -kInfinity, -kInfinity};
+        void add(const Vec3d& p);
         void add(const Box& b);
         double area() const;  // half of the surface
     };
@@ -58,7 +60,7 @@ class Bvh {
     std::uint32_t partition(const Node& node, int depth);
     void build();
 
-    std::vector<glm::dvec3> vertices_;  // three per triangle, by number
+    std::vector<Vec3d> vertices_;  // three per triangle, by number
     std::vector<std::uint32_t> order_;
     std::vector<Node> nodes_;
 };

@@ -84,7 +84,7 @@ class Rasterizer {
         }
         // A clipped polygon is a fan around its first vertex. Pieces that snapping has turned over (or
         // flattened) belong to nobody.
-        for (std::size_t i = 1; i + 1 < t.polygon.size(); ++i) {
+        for (int i = 1; i + 1 < t.vertex_count; ++i) {
             const std::int64_t area = twice_area(t.polygon[0], t.polygon[i], t.polygon[i + 1]);
             if (area == 0 || (area < 0) != (t.orientation > 0)) continue;
             if (area < 0)

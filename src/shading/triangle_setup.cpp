@@ -100,7 +100,7 @@ void setup_clipped(const ProjectionView& projection, TriangleSetup& t) {
     if (in.size() < 3) return;
     for (const HomogeneousPoint& p : in) {
         if (!(p.w > 0)) return;  // an orthographic near plane behind the eye cannot occur; a point at w = 0 can
-        t.polygon.push_back(snap_point(p, projection));
+        t.polygon[t.vertex_count++] = snap_point(p, projection);
     }
     t.kind = clipped_depth_plane(t, in, projection) ? TriangleSetup::Kind::kClipped : TriangleSetup::Kind::kDegenerate;
 }
@@ -109,7 +109,7 @@ void setup_clipped(const ProjectionView& projection, TriangleSetup& t) {
 
 void setup_triangle(const InstanceView& instance, std::uint32_t index, const ProjectionView& projection,
                     TriangleSetup& t) {
-    t.polygon.clear();
+    t.vertex_count = 0;
     std::uint32_t all = ~0u, any = 0;
     bool finite = true;
     for (int i = 0; i < 3; ++i) {
@@ -137,7 +137,7 @@ void setup_triangle(const InstanceView& instance, std::uint32_t index, const Pro
     for (int i = 0; i < 3; ++i) {
         p[i] = to_picture(t.vertices[i], projection.width, projection.height);
         z[i] = t.vertices[i].z / t.vertices[i].w;
-        t.polygon.push_back({p[i].snapped_x, p[i].snapped_y});
+        t.polygon[t.vertex_count++] = {p[i].snapped_x, p[i].snapped_y};
     }
     const std::int64_t area = twice_area(t.polygon[0], t.polygon[1], t.polygon[2]);
     if (area == 0) {

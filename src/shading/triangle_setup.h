@@ -7,7 +7,6 @@
 #include "shading/surface.h"
 
 #include <cstdint>
-#include <vector>
 
 namespace tessera {
 
@@ -26,7 +25,9 @@ struct TriangleSetup {
     float orientation = 0;  // +1 counter-clockwise in the picture as a viewer sees it, -1 clockwise
     ClipVertex<float> vertices[3];
     DepthPlane<float> depth{};
-    std::vector<SnappedVertex> polygon;  // convex up to snapping, in the triangle's own direction
+    static constexpr int kMostVertices = 8;  // a triangle cut by five planes
+    SnappedVertex polygon[kMostVertices];    // convex up to snapping, in the triangle's own direction
+    int vertex_count = 0;
 
     bool visible() const { return kind == Kind::kPlain || kind == Kind::kClipped; }
     // Whether the viewer sees the front of the surface: counter-clockwise, unless the instance mirrors.
@@ -41,7 +42,7 @@ inline std::int64_t twice_area(const SnappedVertex& a, const SnappedVertex& b, c
     return dx1 * dy2 - dx2 * dy1;
 }
 
-// Sets up triangle `index` of the instance (0-based within its mesh). Reuses the storage of `out`.
+// Sets up triangle `index` of the instance (0-based within its mesh).
 void setup_triangle(const InstanceView& instance, std::uint32_t index, const ProjectionView& projection,
                     TriangleSetup& out);
 

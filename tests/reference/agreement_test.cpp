@@ -17,8 +17,8 @@ using test::Prepared;
 // Distance in pixels from a sample to the nearest edge of a triangle's picture.
 double edge_distance(const TriangleSetup& t, SamplePosition at) {
     double nearest = 1e30;
-    for (std::size_t i = 0; i < t.polygon.size(); ++i) {
-        const SnappedVertex a = t.polygon[i], b = t.polygon[(i + 1) % t.polygon.size()];
+    for (int i = 0; i < t.vertex_count; ++i) {
+        const SnappedVertex a = t.polygon[i], b = t.polygon[(i + 1) % t.vertex_count];
         const double dx = b.x - a.x, dy = b.y - a.y, px = at.x - a.x, py = at.y - a.y;
         const double squared = dx * dx + dy * dy;
         const double s = squared > 0 ? std::clamp((px * dx + py * dy) / squared, 0.0, 1.0) : 0.0;
