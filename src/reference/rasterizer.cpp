@@ -64,6 +64,7 @@ class Rasterizer {
   private:
     void draw(const InstanceView& instance, std::uint32_t triangle) {
         const TriangleSetup& t = sampler_.setup(triangle);
+        work_ += 16;
         switch (t.kind) {
             case TriangleSetup::Kind::kOutside:
                 ++out_.counters.culled_frustum;
@@ -101,6 +102,7 @@ class Rasterizer {
         const int y_begin = std::max(first_sample(std::min({v0.y, v1.y, v2.y}), offset_.y), 0);
         const int x_end = std::min(last_sample(std::max({v0.x, v1.x, v2.x}), offset_.x), out_.width);
         const int y_end = std::min(last_sample(std::max({v0.y, v1.y, v2.y}), offset_.y), out_.height);
+        if (x_begin < x_end && y_begin < y_end) work_ += std::int64_t{x_end - x_begin} * (y_end - y_begin);
         for (int y = y_begin; y < y_end; ++y)
             for (int x = x_begin; x < x_end; ++x) {
                 const SamplePosition at{256 * x + offset_.x, 256 * y + offset_.y};
@@ -130,6 +132,9 @@ class Rasterizer {
     SurfaceSampler sampler_;
     SamplePosition offset_;
     const RunControl& control_;
+    // Samples tested since the last checkpoint, a triangle's set-up counted as some.
+    static constexpr std::int64_t kWorkBetweenChecks = 1 << 20;
+    std::int64_t work_ = kWorkBetweenChecks + 1;
     Visibility out_;
 };
 
