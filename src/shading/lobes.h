@@ -65,6 +65,24 @@ struct MetallicRoughnessLobe {
         return p.base * (F(1.0f) - p.metallic);
     }
 
+    // Schlick 1994: f0 at normal incidence, f90 at a grazing angle.
+    template <class F>
+    static TESSERA_INLINE Vec3T<F> schlick(const Vec3T<F>& f0, const Vec3T<F>& f90, F cosine) {
+        const F c = F(1.0f) - cosine, c2 = c * c;
+        return f0 + (f90 - f0) * (c2 * c2 * c);
+    }
+
+    // What enters the base under the microfacets. Appendix B's 1 - F(v.h) returns up to 1.8 times the
+    // light that arrives at a grazing angle. Here it is one minus what the microfacets return in the
+    // flatter of the two directions: reciprocal, and it never gains. Rough surfaces return less at a
+    // grazing angle; f90 is fitted to the integrals of the lobe so that the white furnace stays below 1.
+    template <class F>
+    static TESSERA_INLINE Vec3T<F> into_base(const Vec3T<F>& f0, F roughness, F flatter_cosine) {
+        const F f90 = F(1.0f) / (F(1.0f) + F(11.5f) * (roughness * roughness * roughness));
+        const Vec3T<F> highest{max(f90, f0.x), max(f90, f0.y), max(f90, f0.z)};
+        return Vec3T<F>::splat(F(1.0f)) - schlick(f0, highest, flatter_cosine);
+    }
+
     template <class F>
     static TESSERA_INLINE Vec3T<F> reflect(const LobeParameters<F>& p, const Incidence<F>& i) {
         const Vec3T<F> h = normalize_or(i.to_light + p.view, p.normal);
@@ -73,16 +91,18 @@ struct MetallicRoughnessLobe {
         const F rough = max(p.roughness, F(kSmallestRoughness));
         const F a = rough * rough, a2 = a * a;
 
-        const F c = F(1.0f) - v_h, c2 = c * c;
         const Vec3T<F> base = f0(p);
-        const Vec3T<F> fresnel = base + (Vec3T<F>::splat(F(1.0f)) - base) * (c2 * c2 * c);
+        const Vec3T<F> fresnel = schlick(base, Vec3T<F>::splat(F(1.0f)), v_h);
 
-        const F denominator = n_h * n_h * (a2 - F(1.0f)) + F(1.0f);
+        // 1 - (n.h)^2 + a2 (n.h)^2, its sine taken from the cross product: near the peak of a smooth
+        // surface's highlight the difference would cancel.
+        const Vec3T<F> sine = cross(p.normal, h);
+        const F denominator = dot(sine, sine) + a2 * (n_h * n_h);
         const F distribution = a2 * F(kInversePi) / max(denominator * denominator, F(1e-30f));
         const F smith = n_l * sqrt(n_v * n_v * (F(1.0f) - a2) + a2) + n_v * sqrt(n_l * n_l * (F(1.0f) - a2) + a2);
         const F specular = distribution * F(0.5f) / max(smith, F(1e-30f));
 
-        const Vec3T<F> diffuse = (Vec3T<F>::splat(F(1.0f)) - fresnel) * diffuse_color(p) * F(kInversePi);
+        const Vec3T<F> diffuse = into_base(base, rough, saturate(min(n_l, n_v))) * diffuse_color(p) * F(kInversePi);
         return (diffuse + fresnel * specular) * n_l;
     }
 
@@ -95,7 +115,8 @@ struct MetallicRoughnessLobe {
         const F a004 = min(rx * rx, math::exp2(F(-9.28f) * n_v)) * rx + ry;
         const F scale = F(1.04f) - F(0.572f) * p.roughness - F(1.04f) * a004;
         const F bias = F(0.022f) * p.roughness - F(0.04f) + F(1.04f) * a004;
-        const Vec3T<F> albedo = f0(p) * scale + Vec3T<F>::splat(max(bias, F(0.0f)));
+        const Vec3T<F> fit = f0(p) * scale + Vec3T<F>::splat(max(bias, F(0.0f)));
+        const Vec3T<F> albedo{min(fit.x, F(1.0f)), min(fit.y, F(1.0f)), min(fit.z, F(1.0f))};
         const Vec3T<F> mirrored = p.normal * (F(2.0f) * dot(p.normal, p.view)) - p.view;
         return albedo * ambient_radiance(ambient, mirrored, p.roughness) +
                (Vec3T<F>::splat(F(1.0f)) - albedo) * diffuse_color(p) * ambient_radiance(ambient, p.normal, F(1.0f));
