@@ -82,7 +82,10 @@ TESSERA_INLINE SurfacePoint<F> surface_point(const InstanceView& instance, const
         const auto steep = abs(n.x) > F(0.7f);
         const Vec3T<F> other{select(steep, F(0.0f), F(1.0f)), select(steep, F(1.0f), F(0.0f)), F(0.0f)};
         const Vec3T<F> fallback = normalize_or(cross(other, n), toward_eye);
-        s.tangent = normalize_or(t - n * dot(n, t), fallback);
+        // What is left of a tangent along the normal is rounding, and points anywhere.
+        const Vec3T<F> across = t - n * dot(n, t);
+        const auto usable = dot(across, across) > F(1e-6f) * dot(t, t);
+        s.tangent = select3(usable, normalize_or(across, fallback), fallback);
         s.bitangent = cross(n, s.tangent) * (c[0].tangent.w * F(instance.handedness));
     } else {
         s.tangent = s.bitangent = zero;

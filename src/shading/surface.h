@@ -142,7 +142,8 @@ TESSERA_INLINE Barycentrics<F> barycentrics(const ClipVertex<F> (&v)[3], const V
         ey[i] = (v[j].w * qx[k] - qx[j] * v[k].w) * step_y;
     }
     const F sum = e[0] + e[1] + e[2];
-    const auto usable = sum > F(0.0f);
+    // Below that the reciprocal would overflow.
+    const auto usable = sum > F(1e-37f);
     const F inverse = F(1.0f) / select(usable, sum, F(1.0f));
     const F sum_x = ex[0] + ex[1] + ex[2], sum_y = ey[0] + ey[1] + ey[2];
     Barycentrics<F> r;

@@ -29,7 +29,7 @@ struct TextureView {
 
 // The sRGB decoding curve for 8-bit texels as a polynomial (no table, so vectors need no gathers):
 // exact at 1 and below 0.04045, else a minimax polynomial in c - 1 of degree 6 (Sollya, fpminimax),
-// absolute error below 6e-6, a fiftieth of the distance between neighbouring codes where they are
+// absolute error below 6.1e-6, a fiftieth of the distance between neighbouring codes where they are
 // closest.
 template <class F>
 TESSERA_INLINE F texel_to_linear(F c) {
