@@ -167,7 +167,7 @@ TEST(LIT1_Spot, RangeAndDistanceCountToo) {
 // --- ambient --------------------------------------------------------------------------------
 
 TEST(LIT1_Ambient, UniformIsTheSameFromEveryDirection) {
-    const AmbientView ambient = uniform_ambient(0.37f);
+    const AmbientView ambient = test::even_ambient(0.37f);
     test::Random random(2);
     for (int i = 0; i < 1000; ++i)
         for (const float softness : {0.0f, 0.3f, 1.0f})

@@ -4,6 +4,7 @@
 
 #include "shading/shade.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -102,6 +103,10 @@ inline void set3(float (&out)[3], const Vec3T<float>& v) {
     out[0] = v.x;
     out[1] = v.y;
     out[2] = v.z;
+}
+
+inline AmbientView even_ambient(float radiance) {
+    return {{radiance, radiance, radiance}, {radiance, radiance, radiance}, {0, 1, 0}};
 }
 
 inline LightView directional_light(const Vec3T<float>& to_light, float lux) {
