@@ -26,7 +26,9 @@ void spot_cone(const Light& light, LightView& v) {
     const double outer = math::cos(static_cast<double>(light.outer_cone));
     const double inner =
         light.spot_profile == SpotProfile::kAxis ? 1.0 : math::cos(static_cast<double>(light.inner_cone));
-    const double scale = 1.0 / std::max(1e-3, inner - outer);
+    // The floor is that of KHR_lights_punctual, whose cones may be equal; an axis profile needs none but
+    // against zero.
+    const double scale = 1.0 / std::max(light.spot_profile == SpotProfile::kAxis ? 1e-9 : 1e-3, inner - outer);
     v.spot_scale = static_cast<float>(scale);
     v.spot_offset = static_cast<float>(-outer * scale);
 }

@@ -34,8 +34,11 @@ TESSERA_INLINE Vec3T<F> view_direction(const ShadingContext& context, const Vec3
 template <class F, class Visible>
 TESSERA_INLINE ShadedPoint<F> shade(const ShadingContext& context, const MaterialView& m, const SurfacePoint<F>& s,
                                     Visible&& visible) {
+    if (m.model == ShadingModel::kUnlit) {
+        const Vec4T<F> base = base_color(m, s);
+        return {base.xyz() * F(context.unlit_scale), coverage_of_alpha(m, base.w)};
+    }
     const LobeParameters<F> p = evaluate_material(m, s, view_direction(context, s.position));
-    if (m.model == ShadingModel::kUnlit) return {p.base * F(context.unlit_scale), p.alpha};
     Vec3T<F> radiance = p.emission + reflect_ambient(m, p, context.ambient) * p.occlusion;
     for (int i = 0; i < context.light_count; ++i) {
         const LightSample<F> light = sample_light(context.lights[i], s.position);
