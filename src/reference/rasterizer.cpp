@@ -52,8 +52,10 @@ class Rasterizer {
                 continue;
             }
             for (std::uint32_t t = 0; t < count; ++t) {
-                if (t % 4096 == 0)
+                if (work_ > kWorkBetweenChecks) {
                     control_.checkpoint(static_cast<double>(instance.first_triangle + t) / frame_.triangle_count);
+                    work_ = 0;
+                }
                 draw(instance, instance.first_triangle + t);
             }
         }

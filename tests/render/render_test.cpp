@@ -91,6 +91,24 @@ TEST(Render, ProgressRisesToOne) {
     EXPECT_LE(last, 1.0);
 }
 
+TEST(Render, FewLargeTrianglesAreCancelledBetweenThem) {
+    // One mesh of few triangles, each of them all of the picture: the work between two looks at cancel()
+    // is measured in samples, not in triangles.
+    Scene scene;
+    Primitive layers = rectangle(2, 2, 0, add_material(scene, unlit({1, 1, 1, 1})));
+    const std::vector<std::uint32_t> once = layers.indices;
+    for (int i = 1; i < 40; ++i) layers.indices.insert(layers.indices.end(), once.begin(), once.end());
+    add_mesh(scene, std::move(layers));
+    add_orthographic(scene);
+    RenderOptions o = small(512, 512);
+    o.engine = Engine::kReferenceRaster;
+    double reached = 0;
+    o.progress = [&](double p) { reached = p; };
+    o.cancel = [&] { return reached > 0.1; };  // visibility is the first half of the run
+    EXPECT_EQ(refusal(scene, o), ErrorCode::kCancelled);
+    EXPECT_LT(reached, 0.3);
+}
+
 TEST(Render, RAS6_CullingIsCounted) {
     const Scene sphere = make_scene(wl::sphere(40));
     RenderOptions o = small(64, 64);
