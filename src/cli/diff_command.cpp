@@ -74,7 +74,10 @@ int run(const DiffArguments& arguments) {
     v.allowed = static_cast<std::uint64_t>(parse_integer("--max-differing", arguments.max_differing, 0, INT64_MAX));
     const auto max_pixels =
         static_cast<std::uint64_t>(parse_integer("--max-pixels", arguments.max_pixels, 1, INT64_MAX));
-    if (!arguments.picture.empty()) check_writable(arguments.picture);
+    const std::string& picture = arguments.picture;
+    if (!picture.empty() && !picture.ends_with(".png") && !picture.ends_with(".PNG") && !picture.starts_with("/dev/"))
+        refuse("--output", "'" + picture + "' does not end in .png");
+    if (!picture.empty()) check_writable(picture);
 
     // Two 16-bit pictures are compared as such, any other pair as 8 bits.
     Image a = read_image(arguments.first, max_pixels, true), b = read_image(arguments.second, max_pixels, true);
@@ -87,13 +90,12 @@ int run(const DiffArguments& arguments) {
     if (v.same_size) v.difference = compare_images(a, b, v.tolerance);
     v.equal = v.same_size && v.difference.differing_pixels <= v.allowed;
 
-    if (!arguments.picture.empty() && v.same_size) {
+    if (!picture.empty() && v.same_size) {
         const bool deep = a.format() == PixelFormat::kRgba16;
         const double tolerance = deep ? v.tolerance / 257 : v.tolerance;
-        write_output(arguments.picture,
-                     encode_png(deep ? difference_picture(read_image(arguments.first, max_pixels),
-                                                          read_image(arguments.second, max_pixels), tolerance)
-                                     : difference_picture(a, b, tolerance)));
+        write_output(picture, encode_png(deep ? difference_picture(read_image(arguments.first, max_pixels),
+                                                                   read_image(arguments.second, max_pixels), tolerance)
+                                              : difference_picture(a, b, tolerance)));
     }
     write_output("-", arguments.json ? verdict_json(arguments, a, b, v) : verdict_text(a, b, v));
     return v.equal ? kFine : kComparisonFailed;

@@ -58,7 +58,8 @@ int print(const std::string& text) {
 std::string unexpected(const CLI::App& application) {
     const std::vector<std::string> rest = application.remaining(true);
     for (const std::string& argument : rest)
-        if (argument.size() > 1 && argument[0] == '-') return argument + ": there is no such option";
+        if (argument.size() > 1 && argument[0] == '-' && argument != "--")
+            return argument + ": there is no such option";
     return (rest.empty() ? std::string("arguments") : "'" + rest.back() + "'") + ": not expected here";
 }
 

@@ -7,8 +7,24 @@
 
 namespace tessera::cli {
 
+namespace {
+
+// A name of megabytes in a file must not become a line of megabytes: the middle goes, for the place
+// stands at the beginning and the reason at the end. Cut between characters of UTF-8.
+std::string shortened(std::string_view text) {
+    constexpr std::size_t kLongest = 1000, kEnd = 300;
+    if (text.size() <= kLongest) return std::string(text);
+    const auto inside_character = [&](std::size_t i) { return (static_cast<unsigned char>(text[i]) & 0xc0) == 0x80; };
+    std::size_t head = kLongest - kEnd, tail = text.size() - kEnd;
+    while (head > 0 && inside_character(head)) --head;
+    while (tail + 1 < text.size() && inside_character(tail)) ++tail;
+    return std::string(text.substr(0, head)) + " ... " + std::string(text.substr(tail));
+}
+
+}  // namespace
+
 std::string printable(std::string_view text) {
-    std::string clean(text);
+    std::string clean = shortened(text);
     for (char& c : clean)
         if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = ' ';
     return clean;

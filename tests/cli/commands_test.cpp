@@ -148,6 +148,29 @@ TEST_F(CliDiff, FailuresHaveTheirCodes) {
     EXPECT_EQ(diff({"-o", in_folder("nowhere/d.png")}).code, 5);
 }
 
+TEST_F(CliDiff, ThePictureIsAPngAndStdoutCarriesTheReport) {
+    for (const char* name : {"d.jpg", "d"}) EXPECT_EQ(diff({"-o", in_folder(name)}).code, 2) << name;
+    EXPECT_EQ(diff({"-o", "-"}).code, 2);
+    EXPECT_FALSE(std::filesystem::exists(in_folder("d.jpg")));
+}
+
+TEST_F(Cli, ALongNameInAFileGivesAShortLine) {
+    const std::string name(100000, 'B');
+    const Outcome run =
+        run_command({"info", "-"}, R"({"asset":{"version":"2.0"},"extensionsRequired":[")" + name + "\"]}");
+    EXPECT_EQ(run.code, 4);
+    EXPECT_EQ(run.error_lines(), 1);
+    EXPECT_LT(run.err.size(), 1200u);
+    EXPECT_NE(run.err.find("/extensionsRequired/0"), std::string::npos) << run.err;
+    EXPECT_NE(run.err.find("not supported"), std::string::npos) << run.err;
+}
+
+TEST_F(Cli, WhatFollowsTwoDashesIsNoOption) {
+    const Outcome run = run_command({"render", "--", scene("hierarchy.gltf"), "-o", in_folder("a.png")});
+    EXPECT_EQ(run.code, 2);
+    EXPECT_EQ(run.err.find("--: there is no such option"), std::string::npos) << run.err;
+}
+
 TEST(JsonWriter, EscapesWhatJsonForbids) {
     const std::string hostile =
         std::string("a\"b\\c\n\x01\x7f") + "\xff\xc3\xa9\xed\xa0\x80" + "\xf0\x9f\x98\x80\xe2\x82";
