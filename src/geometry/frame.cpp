@@ -6,6 +6,7 @@
 #include "geometry/matrix.h"
 #include "geometry/normals.h"
 #include "geometry/tangents.h"
+#include "geometry/texture_transform.h"
 
 #include <algorithm>
 #include <array>
@@ -33,6 +34,23 @@ void store_rows(const glm::dmat4& m, int rows, float* out) {
         for (int c = 0; c < 4; ++c) out[4 * r + c] = static_cast<float>(m[c][r]);
 }
 
+// Tangents for the texture coordinates that the normal texture is sampled with: transformed, where its
+// reference turns or mirrors them. Moving and scaling evenly leave tangents as they are.
+Primitive with_tangents_for(const Primitive& p, const TextureRef& normal_map) {
+    const auto set = static_cast<std::size_t>(normal_map.uv_set);
+    const bool same_frame = normal_map.rotation == 0 && normal_map.scale.x > 0 && normal_map.scale.y > 0;
+    if (same_frame || set >= p.texcoords.size()) return with_tangents(p, normal_map.uv_set);
+    Primitive mapped = p;
+    float m[6];
+    texture_transform(normal_map, m);
+    std::vector<Vec2> uv = p.texcoords[set];
+    for (Vec2& t : uv) t = {m[0] * t.x + m[1] * t.y, m[3] * t.x + m[4] * t.y};
+    mapped.texcoords.push_back(std::move(uv));
+    mapped = with_tangents(mapped, static_cast<int>(p.texcoords.size()));
+    mapped.texcoords.pop_back();
+    return mapped;
+}
+
 // Adds the normals and tangents that drawing with this material needs and the file lacks.
 Primitive complete(const Primitive& p, const Material* material) {
     Primitive made;
@@ -40,7 +58,7 @@ Primitive complete(const Primitive& p, const Material* material) {
     const TextureRef* normal_map = material ? &material->texture(TextureSlot::kNormal) : nullptr;
     if (normal_map && normal_map->texture != kNone) {
         const Primitive& current = made.positions.empty() ? p : made;
-        if (current.tangents.empty()) made = with_tangents(current, normal_map->uv_set);
+        if (current.tangents.empty()) made = with_tangents_for(current, *normal_map);
     }
     return made;
 }

@@ -1,5 +1,6 @@
 #include "render/shading_scene.h"
 
+#include "geometry/texture_transform.h"
 #include "render/lighting.h"
 #include "simd/math.h"
 
@@ -40,19 +41,6 @@ MaterialView convert(const Material& m) {
     copy3(m.specular, 1, v.specular);
     v.shininess = m.shininess;
     return v;
-}
-
-// uv' = translate(offset) * rotate(rotation) * scale(scale) * uv, where a positive rotation turns the
-// texture counter-clockwise with v pointing down (KHR_texture_transform).
-void texture_transform(const TextureRef& ref, float* rows) {
-    const auto angle = static_cast<double>(ref.rotation);
-    const double c = math::cos(angle), s = math::sin(angle);
-    rows[0] = static_cast<float>(c * static_cast<double>(ref.scale.x));
-    rows[1] = static_cast<float>(s * static_cast<double>(ref.scale.y));
-    rows[2] = ref.offset.x;
-    rows[3] = static_cast<float>(-s * static_cast<double>(ref.scale.x));
-    rows[4] = static_cast<float>(c * static_cast<double>(ref.scale.y));
-    rows[5] = ref.offset.y;
 }
 
 TextureView make_view(const MipChain& chain, const Sampler& sampler, bool srgb) {

@@ -40,6 +40,41 @@ TEST(Picture, FB1_UnlitTexturesShowTheirExactCodes) {
         }
 }
 
+TEST(Picture, TEX1_TurnedNormalTexturesTurnTheTangentsMadeForThem) {
+    // KHR_texture_transform in the reference, or its matrix applied to the vertices' own uv: one picture.
+    Image bumps(2, 2, PixelFormat::kRgba8);
+    for (int i = 0; i < 4; ++i) {
+        std::uint8_t* t = bumps.data<std::uint8_t>() + 4 * i;
+        t[0] = 218, t[1] = 128, t[2] = 218, t[3] = 255;  // leans towards +u
+    }
+    Light sun;
+    sun.type = Light::Type::kDirectional;
+    sun.intensity = 3;
+    for (const TextureRef& ref : {TextureRef{0, 0, {0, 0}, {1, 1}, 1.5707964f}, TextureRef{0, 0, {0, 0}, {1, 1}, 0.6f},
+                                  TextureRef{0, 0, {1, 0}, {-1, 1}, 0}, TextureRef{0, 0, {0, 0}, {1, -2}, -2}}) {
+        const auto picture = [&](bool in_reference) {
+            Scene scene;
+            scene.pictures.push_back({"bumps", "", std::make_shared<const Image>(bumps), ""});
+            scene.textures.push_back({"", 0, kNone, ""});
+            Material m = lambert({1, 1, 1});
+            m.texture(TextureSlot::kNormal).texture = 0;
+            if (in_reference) m.texture(TextureSlot::kNormal) = ref;
+            Primitive p = rectangle(1, 1, 0, add_material(scene, m));
+            const float c = std::cos(ref.rotation), s = std::sin(ref.rotation);
+            if (!in_reference)
+                for (Vec2& t : p.texcoords[0])
+                    t = {c * ref.scale.x * t.x + s * ref.scale.y * t.y + ref.offset.x,
+                         -s * ref.scale.x * t.x + c * ref.scale.y * t.y + ref.offset.y};
+            add_mesh(scene, std::move(p));
+            add_orthographic(scene);
+            add_light(scene, sun, {}, {-0.25f, 0.35f, 0, 0.9028f});
+            return linear_at(render(scene, small(8, 8)), 4, 4);
+        };
+        const Vec4 a = picture(true), b = picture(false);
+        EXPECT_NEAR(a.x, b.x, 1e-4f) << ref.rotation << " " << ref.scale.x << " " << ref.scale.y;
+    }
+}
+
 TEST(Picture, LIT10_StackedTransparencyIsComposedFarToNearWhateverTheOrder) {
     std::mt19937 random(7);
     std::uniform_real_distribution<float> value(0, 1);
