@@ -18,6 +18,7 @@
 namespace tessera {
 
 enum class Engine : std::uint8_t {
+    kRaster,           // tile rasterizer: SIMD, parallel; the same bits as kReferenceRaster
     kReferenceRaster,  // z-buffer, scalar, single-threaded: the oracle
     kReferenceTrace,   // ray caster with hard shadows, scalar, single-threaded
 };
@@ -42,7 +43,7 @@ enum class Lighting : std::uint8_t {
 
 struct RenderOptions {
     int width = 1024, height = 768;  // pixels, 1 .. kMaxImageSide
-    Engine engine = Engine::kReferenceRaster;
+    Engine engine = Engine::kRaster;
     View view;
     Lighting lighting = Lighting::kAuto;
     // Uniform ambient radiance; unset: the scene's, else the studio's own, or a twentieth of the exposed
@@ -60,8 +61,10 @@ struct RenderOptions {
     bool want_linear = false, want_depth = false, want_primitive = false;
 
     std::uint64_t max_bytes = std::uint64_t{4} << 30;  // memory that rendering may take
-    std::function<void(double)> progress;              // 0 .. 1, from any thread, not reentrant
-    std::function<bool()> cancel;                      // true: stop; render() throws kCancelled
+    // Called from any thread, but one call at a time: rising from 0 to 1, and true to stop (render()
+    // then throws kCancelled).
+    std::function<void(double)> progress;
+    std::function<bool()> cancel;
 };
 
 struct RenderStats {

@@ -38,12 +38,13 @@ T choose(const std::string& option, const std::string& text, std::initializer_li
 }
 
 Engine parse_engine(const std::string& text) {
-    for (const char* planned : {"raster", "trace", "hybrid"})
+    for (const char* planned : {"trace", "hybrid"})
         if (text == planned)
-            refuse("--engine", text + " does not exist yet; there are reference-raster and reference-trace");
-    return choose<Engine>(
-        "--engine", text,
-        {{"reference-raster", Engine::kReferenceRaster}, {"reference-trace", Engine::kReferenceTrace}});
+            refuse("--engine", text + " does not exist yet; there are raster, reference-raster and reference-trace");
+    return choose<Engine>("--engine", text,
+                          {{"raster", Engine::kRaster},
+                           {"reference-raster", Engine::kReferenceRaster},
+                           {"reference-trace", Engine::kReferenceTrace}});
 }
 
 View parse_view(const RenderArguments& a, bool& z_is_up) {
@@ -103,7 +104,7 @@ void add_render_options(CLI::App& app, RenderArguments& a) {
 
     option("Picture", "-s,--size", a.size, "WxH", "size in pixels (default 1024x768)");
     option("Picture", "--engine", a.engine, "NAME",
-           "reference-raster (z-buffer, the default) or reference-trace (ray caster with hard shadows)");
+           "raster (the default), reference-raster (the same bits, slowly) or reference-trace (hard shadows)");
     option("Picture", "--samples", a.samples, "N", "samples per pixel, 1 .. 256 (default 4)");
     option("Picture", "--background", a.background, "COLOUR",
            "none (transparent), #rrggbb, #rrggbbaa, r,g,b[,a] (each 0 .. 1) or a name (default white)");

@@ -73,4 +73,34 @@ void add_counters(RenderStats& stats, const VisibilityCounters& counters, bool f
     stats.clipped = counters.clipped;
 }
 
+void add_counters(RenderStats& stats, const RasterCounters& counters) {
+    stats.triangles = counters.triangles;
+    stats.culled_frustum = counters.front.frustum;
+    stats.culled_backface = counters.front.backface;
+    stats.culled_degenerate = counters.front.degenerate;
+    stats.clipped = counters.front.clipped;
+    stats.fragments_passed = counters.fragments_passed;
+    stats.pixels_covered = counters.pixels_covered;
+}
+
+RasterTargets make_planes(const RenderOptions& options, RenderResult& result) {
+    RasterTargets targets;
+    const int w = options.width, h = options.height;
+    result.color = Image(w, h, PixelFormat::kRgba8);
+    targets.rgba = result.color.data<std::uint8_t>();
+    if (options.want_linear) {
+        result.linear = Image(w, h, PixelFormat::kRgba32f);
+        targets.linear = result.linear.data<float>();
+    }
+    if (options.want_depth) {
+        result.depth = Image(w, h, PixelFormat::kF32);
+        targets.distance = result.depth.data<float>();
+    }
+    if (options.want_primitive) {
+        result.primitive = Image(w, h, PixelFormat::kU32);
+        targets.triangle = result.primitive.data<std::uint32_t>();
+    }
+    return targets;
+}
+
 }  // namespace tessera

@@ -2,6 +2,7 @@
 // planes; and the label planes.
 #pragma once
 
+#include "raster/engine.h"
 #include "reference/engine.h"
 #include "render/options.h"
 
@@ -37,5 +38,9 @@ void take_labels(ReferenceEngine& engine, const RunControl& control, const Rende
 // Adds a pass' counters to the statistics. The culling counters are those of the first pass: the
 // others cull the same triangles again.
 void add_counters(RenderStats& stats, const VisibilityCounters& counters, bool first);
+void add_counters(RenderStats& stats, const RasterCounters& counters);
+
+// Allocates the planes that the options ask for, for an engine that writes them itself.
+RasterTargets make_planes(const RenderOptions& options, RenderResult& result);
 
 }  // namespace tessera

@@ -18,13 +18,23 @@ constexpr std::uint64_t kBytesPerPixel = 4 + 4 + 16 + 4;
 
 }  // namespace
 
-const char* name(Engine engine) { return engine == Engine::kReferenceTrace ? "reference-trace" : "reference-raster"; }
+const char* name(Engine engine) {
+    switch (engine) {
+        case Engine::kRaster:
+            return "raster";
+        case Engine::kReferenceRaster:
+            return "reference-raster";
+        case Engine::kReferenceTrace:
+            return "reference-trace";
+    }
+    return "unknown";
+}
 
 void check_options(const RenderOptions& o) {
     if (o.width < 1 || o.height < 1 || o.width > kMaxImageSide || o.height > kMaxImageSide)
         refuse("picture size " + std::to_string(o.width) + "x" + std::to_string(o.height) + ": sides must be 1 to " +
                std::to_string(kMaxImageSide));
-    if (o.engine != Engine::kReferenceRaster && o.engine != Engine::kReferenceTrace) refuse("unknown engine");
+    if (o.engine > Engine::kReferenceTrace) refuse("unknown engine");
     if (o.samples < 1 || o.samples > 256) refuse("samples must be 1 to 256");
     if (o.exposure_ev && !(std::fabs(*o.exposure_ev) <= 64.0f)) refuse("exposure must be within 64 EV");
     if (o.ambient && !(*o.ambient >= 0.0f && *o.ambient < 1e9f)) refuse("ambient radiance must not be negative");
@@ -59,8 +69,11 @@ RunControl Watchdog::control(int step, int steps) const {
     const auto pixels = static_cast<std::uint64_t>(options_.width) * static_cast<std::uint64_t>(options_.height);
     control.max_fragments = static_cast<std::size_t>((options_.max_bytes - pixels * kBytesPerPixel) / sizeof(Fragment));
     control.checkpoint = [this, step, steps](double part) {
+        if (!options_.cancel && !options_.progress) return;
+        const std::lock_guard lock(mutex_);
         if (options_.cancel && options_.cancel()) throw Error(ErrorCode::kCancelled, "cancelled");
-        if (options_.progress && steps > 0) options_.progress((step + std::min(part, 1.0)) / steps);
+        const double done = steps > 0 ? (step + std::min(part, 1.0)) / steps : -1.0;
+        if (options_.progress && done > reported_) options_.progress(reported_ = done);
     };
     return control;
 }

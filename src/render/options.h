@@ -6,6 +6,8 @@
 #include "reference/visibility.h"
 #include "shading/film.h"
 
+#include <mutex>
+
 namespace tessera {
 
 // Throws kUsage for options that make no sense and kLimit for pictures beyond the memory limit.
@@ -13,7 +15,8 @@ void check_options(const RenderOptions& options);
 
 FilmView film_view(const RenderOptions& options, double exposure);
 
-// Turns the stages' checkpoints into calls of the caller's progress and cancel callbacks.
+// Turns the stages' checkpoints, which come from any thread, into calls of the caller's progress and
+// cancel callbacks: one at a time, with rising progress.
 class Watchdog {
   public:
     explicit Watchdog(const RenderOptions& options) : options_(options) {}
@@ -22,6 +25,8 @@ class Watchdog {
 
   private:
     const RenderOptions& options_;
+    mutable std::mutex mutex_;
+    mutable double reported_ = -1;
 };
 
 }  // namespace tessera

@@ -1,10 +1,11 @@
-// The renderer on one page: scene -> frame -> shading -> for every sample: visibility, shading ->
-// film. Everything that happens to a picture happens here, in this order.
+// The renderer on one page: scene -> frame -> shading -> visibility and shading -> film. Everything that
+// happens to a picture happens here, in this order.
 #include <tessera/error.h>
 #include <tessera/render.h>
 
 #include "core/fp_environment.h"
 #include "core/sampling.h"
+#include "raster/engine.h"
 #include "reference/engine.h"
 #include "render/canvas.h"
 #include "render/options.h"
@@ -30,6 +31,51 @@ void shade_pass(ReferenceEngine& engine, const Visibility& seen, SamplePosition 
     }
 }
 
+// The tile rasterizer: visibility, shading and film inside each tile.
+void draw_tiles(const Frame& frame, const ShadingScene& shading, const RenderOptions& options, Arena& arena,
+                const Watchdog& watchdog, Stopwatch& watch, RenderResult& result) {
+    RasterSettings settings;
+    for (int sample = 0; sample < options.samples; ++sample) {
+        const SampleOffset s = sample_offset(sample, options.samples);
+        settings.samples.push_back({s.x, s.y});
+    }
+    const RunControl control = watchdog.control(0, 1);
+    settings.film = film_view(options, shading.exposure());
+    settings.isa = resolve_isa(options.isa);
+    settings.max_fragments = control.max_fragments;
+    settings.checkpoint = control.checkpoint;
+    const RasterTargets targets = make_planes(options, result);
+    add_counters(result.stats, draw_raster(frame, shading.context(), settings, targets, arena));
+    watch.phase("tiles");
+    result.stats.isa = settings.isa;
+    result.stats.threads = arena.threads();
+}
+
+// The reference engines: pass by pass, everything in full.
+void draw_reference(const Frame& frame, const ShadingScene& shading, const RenderOptions& options,
+                    const Watchdog& watchdog, Stopwatch& watch, RenderResult& result) {
+    const bool tracing = options.engine == Engine::kReferenceTrace;
+    ReferenceEngine engine(frame, shading.context(), tracing, options.shadows);
+    watch.phase("build");
+
+    Canvas canvas(options);
+    for (int sample = 0; sample < options.samples; ++sample) {
+        const SampleOffset s = sample_offset(sample, options.samples);
+        const SamplePosition offset{s.x, s.y};
+        const Visibility seen = engine.see(offset, watchdog.control(2 * sample, 2 * options.samples));
+        add_counters(result.stats, seen.counters, sample == 0);
+        watch.phase("visibility");
+        shade_pass(engine, seen, offset, canvas, watchdog.control(2 * sample + 1, 2 * options.samples).checkpoint);
+        watch.phase("shading");
+    }
+    if (options.want_depth || options.want_primitive) {
+        take_labels(engine, watchdog.control(0, 0), options, result);
+        watch.phase("labels");
+    }
+    canvas.develop(film_view(options, shading.exposure()), result);
+    watch.phase("film");
+}
+
 }  // namespace
 
 RenderResult render(const Scene& scene, const RenderOptions& options) {
@@ -48,32 +94,15 @@ RenderResult render(const Scene& scene, const RenderOptions& options) {
     const ShadingScene shading(scene, frame, options, arena, result.warnings);
     watch.phase("prepare");
 
-    const bool tracing = options.engine == Engine::kReferenceTrace;
-    ReferenceEngine engine(frame, shading.context(), tracing, options.shadows);
-    watch.phase("build");
+    if (options.engine == Engine::kRaster)
+        draw_tiles(frame, shading, options, arena, watchdog, watch, result);
+    else
+        draw_reference(frame, shading, options, watchdog, watch, result);
 
-    Canvas canvas(options);
-    for (int sample = 0; sample < options.samples; ++sample) {
-        const SampleOffset s = sample_offset(sample, options.samples);
-        const SamplePosition offset{s.x, s.y};
-        const Visibility seen = engine.see(offset, watchdog.control(2 * sample, 2 * options.samples));
-        add_counters(result.stats, seen.counters, sample == 0);
-        watch.phase("visibility");
-        shade_pass(engine, seen, offset, canvas, watchdog.control(2 * sample + 1, 2 * options.samples).checkpoint);
-        watch.phase("shading");
-    }
-
-    if (options.want_depth || options.want_primitive) {
-        take_labels(engine, watchdog.control(0, 0), options, result);
-        watch.phase("labels");
-    }
-
-    canvas.develop(film_view(options, shading.exposure()), result);
-    watch.phase("film");
-
+    result.stats.engine = options.engine;
     result.stats.exposure = shading.exposure();
     result.stats.color_hash = hash_pixels(result.color);
-    watch.finish(options);
+    watch.finish();
     return result;
 }
 

@@ -27,13 +27,9 @@ class Stopwatch {
     }
 
     // The frame is done.
-    void finish(const RenderOptions& options) {
+    void finish() {
         stats_.frame_ms = std::chrono::duration<double, std::milli>(Clock::now() - start_).count();
         stats_.cpu_ms = cpu_ms() - cpu_start_;
-        stats_.engine = options.engine;
-        // The reference engines are plain single-threaded code whatever was asked for.
-        stats_.isa = Isa::kScalar;
-        stats_.threads = 1;
     }
 
   private:

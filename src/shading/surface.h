@@ -15,6 +15,9 @@ struct ClipVertex {
     F x, y, z, w;
 };
 
+// Clip coordinates beyond this are not drawn: their products would leave the range of float.
+inline constexpr float kLargestCoordinate = 1e15f;
+
 template <class F>
 TESSERA_INLINE ClipVertex<F> to_clip(const float* rows, const Vec3T<F>& p) {
     return {rows[0] * p.x + rows[1] * p.y + rows[2] * p.z + rows[3],

@@ -8,12 +8,9 @@
 namespace tessera {
 namespace {
 
-// Coordinates beyond this are not drawn: their products would leave the range of float.
-constexpr float kLargest = 1e15f;
-
 bool usable(const ClipVertex<float>& v) {
-    return std::fabs(v.x) < kLargest && std::fabs(v.y) < kLargest && std::fabs(v.z) < kLargest &&
-           std::fabs(v.w) < kLargest;
+    return std::fabs(v.x) < kLargestCoordinate && std::fabs(v.y) < kLargestCoordinate && std::fabs(v.z) < kLargestCoordinate &&
+           std::fabs(v.w) < kLargestCoordinate;
 }
 
 SnappedVertex snap_point(const HomogeneousPoint& p, const ProjectionView& projection) {

@@ -140,7 +140,7 @@ TEST_F(CliRender, UsageErrorsExitWith2AndNameTheOption) {
         {{"-o", in_folder("a.bmp")}, "--output"},
         {{"-o", out, "--bogus"}, "--bogus"},
         {{"-o", out, "--frobnicate", "3"}, "--frobnicate"},
-        {{"-o", out, "--engine", "raster"}, "--engine: raster does not exist yet"},
+        {{"-o", out, "--engine", "trace"}, "--engine: trace does not exist yet"},
         {{"-o", out, "--engine", "trace"}, "--engine: trace does not exist yet"},
         {{"-o", out, "--engine", "hybrid"}, "--engine: hybrid does not exist yet"},
         {{"-o", out, "--engine", "fast"}, "--engine"},
