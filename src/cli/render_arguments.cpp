@@ -126,9 +126,10 @@ void add_render_options(CLI::App& app, RenderArguments& a) {
     option("Machine", "--threads", a.threads, "N", "threads to use (default: all this process may)");
     option("Machine", "--isa", a.isa, "NAME", "auto (default), scalar, sse4, avx2 or avx512; the picture is the same");
 
-    option("Limits", "--max-triangles", a.max_triangles, "N", "refuse scenes with more (default 67108864)");
-    option("Limits", "--max-pixels", a.max_pixels, "N", "refuse larger textures or pictures (default 268435456)");
-    option("Limits", "--max-memory", a.max_memory, "BYTES", "memory for scene and frame, such as 512M or 2G");
+    option("Limits", "--max-triangles", a.max_triangles, "N", "refuse scenes with more (default 16777216)");
+    option("Limits", "--max-pixels", a.max_pixels, "N", "refuse larger textures (default 67108864) or pictures");
+    option("Limits", "--max-memory", a.max_memory, "BYTES",
+           "memory for the scene (default 1G) and the frame (default 4G)");
     option("Limits", "--timeout", a.timeout, "S", "give up after so many seconds (exit code 6)");
 
     app.footer(
@@ -178,7 +179,8 @@ RenderJob parse_render_arguments(const RenderArguments& a) {
         job.load.max_triangles =
             static_cast<std::uint64_t>(parse_integer("--max-triangles", a.max_triangles, 0, INT64_MAX));
     if (!a.max_pixels.empty())
-        job.load.max_pixels = static_cast<std::uint64_t>(parse_integer("--max-pixels", a.max_pixels, 1, INT64_MAX));
+        job.max_picture = job.load.max_pixels =
+            static_cast<std::uint64_t>(parse_integer("--max-pixels", a.max_pixels, 1, INT64_MAX));
     if (!a.max_memory.empty()) job.load.max_bytes = render.max_bytes = parse_bytes("--max-memory", a.max_memory);
     if (!a.timeout.empty()) job.timeout = parse_number("--timeout", a.timeout, 0.001, 1e9);
     return job;

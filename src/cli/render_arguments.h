@@ -37,8 +37,8 @@ struct RenderJob {
     Codec codec = Codec::kPng;
     int quality = 92, png_level = 1;
     std::optional<std::array<int, 3>> color_bits;
-    std::optional<double> timeout;  // seconds
-    std::uint64_t max_pixels = 0;
+    std::optional<double> timeout;                                             // seconds
+    std::uint64_t max_picture = std::uint64_t{kMaxImageSide} * kMaxImageSide;  // pixels
 };
 
 // Throws kUsage, naming the option, unless all of it makes sense.

@@ -65,8 +65,7 @@ RenderResult render_scene(RenderJob& job, const Scene& scene, Deadline& deadline
 int run(const RenderArguments& arguments) {
     const Stopwatch total;
     RenderJob job = parse_render_arguments(arguments);
-    if (static_cast<std::uint64_t>(job.render.width) * static_cast<std::uint64_t>(job.render.height) >
-        job.load.max_pixels)
+    if (static_cast<std::uint64_t>(job.render.width) * static_cast<std::uint64_t>(job.render.height) > job.max_picture)
         throw Error(ErrorCode::kLimit, "--size: more pixels than --max-pixels allows");
     if (!arguments.output.empty()) check_writable(arguments.output);
     if (!arguments.stats.empty()) check_writable(arguments.stats);

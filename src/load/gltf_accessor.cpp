@@ -10,6 +10,10 @@ struct Shape {
     std::string_view name;
     std::size_t rows, columns;
 };
+// Elements of an accessor that is all zeros but for sparse ones: a few bytes of file may not ask for
+// gigabytes.
+constexpr std::size_t kMostZeros = std::size_t{1} << 24;
+
 constexpr std::array<Shape, 7> kShapes = {
     {{"SCALAR", 1, 1}, {"VEC2", 2, 1}, {"VEC3", 3, 1}, {"VEC4", 4, 1}, {"MAT2", 2, 2}, {"MAT3", 3, 3}, {"MAT4", 4, 4}}};
 
@@ -111,6 +115,9 @@ Accessor open_accessor(GltfDocument& document, std::size_t index) {
             number->fail("elements of " + std::to_string(used) + " bytes with a stride of " +
                          std::to_string(a.base.stride));
         a.base.data = fit(json, view, json.integer_or("byteOffset", 0), a.count, a.base.stride, used);
+    } else if (a.count > kMostZeros) {
+        json.fail(std::to_string(a.count) + " elements without a buffer view: at most " + std::to_string(kMostZeros),
+                  ErrorCode::kLimit);
     }
     if (const std::optional<Json> sparse = json.find("sparse")) {
         const std::uint64_t replaced = sparse->at("count").integer();

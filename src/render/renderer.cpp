@@ -12,6 +12,8 @@
 #include "render/shading_scene.h"
 #include "render/stopwatch.h"
 
+#include <algorithm>
+
 namespace tessera {
 namespace {
 
@@ -31,6 +33,9 @@ void shade_pass(ReferenceEngine& engine, const Visibility& seen, SamplePosition 
     }
 }
 
+// 512 transparent layers all over a tile; some hundred MiB of working memory per thread.
+constexpr std::size_t kMostFragmentsPerTile = 512 * kTilePixels;
+
 // The tile rasterizer: visibility, shading and film inside each tile.
 void draw_tiles(const Frame& frame, const ShadingScene& shading, const RenderOptions& options, Arena& arena,
                 const Watchdog& watchdog, Stopwatch& watch, RenderResult& result) {
@@ -40,9 +45,9 @@ void draw_tiles(const Frame& frame, const ShadingScene& shading, const RenderOpt
         settings.samples.push_back({s.x, s.y});
     }
     const RunControl control = watchdog.control(0, 1);
-    settings.film = film_view(options, shading.exposure());
+    settings.film = shading.film(options);
     settings.isa = resolve_isa(options.isa);
-    settings.max_fragments = control.max_fragments;
+    settings.max_fragments = std::min(control.max_fragments, kMostFragmentsPerTile);
     settings.checkpoint = control.checkpoint;
     const RasterTargets targets = make_planes(options, result);
     add_counters(result.stats, draw_raster(frame, shading.context(), settings, targets, arena));
@@ -72,7 +77,7 @@ void draw_reference(const Frame& frame, const ShadingScene& shading, const Rende
         take_labels(engine, watchdog.control(0, 0), options, result);
         watch.phase("labels");
     }
-    canvas.develop(film_view(options, shading.exposure()), result);
+    canvas.develop(shading.film(options), result);
     watch.phase("film");
 }
 

@@ -2,6 +2,7 @@
 
 #include "geometry/texture_transform.h"
 #include "render/lighting.h"
+#include "render/options.h"
 #include "simd/math.h"
 
 #include <algorithm>
@@ -145,6 +146,12 @@ ShadingScene::ShadingScene(const Scene& scene, const Frame& frame, const RenderO
         context_.ambient = uniform_ambient(*scene.ambient);
     else
         context_.ambient = studio ? studio_ambient() : grey(kDefaultAmbient / exposure_);
+}
+
+FilmView ShadingScene::film(const RenderOptions& options) const {
+    FilmView film = film_view(options, exposure_);
+    if (all_unlit_) film.tone_map = ToneMap::kNone;
+    return film;
 }
 
 }  // namespace tessera

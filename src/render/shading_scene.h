@@ -7,6 +7,7 @@
 #include "core/parallel.h"
 #include "geometry/frame.h"
 #include "image/mipmap.h"
+#include "shading/film.h"
 #include "shading/shade.h"
 
 #include <string>
@@ -24,6 +25,9 @@ class ShadingScene {
 
     const ShadingContext& context() const { return context_; }
     double exposure() const { return exposure_; }
+    // The film for these options. Where nothing but unlit materials is drawn their colours are display
+    // colours, and no tone map touches them.
+    FilmView film(const RenderOptions& options) const;
 
   private:
     void make_materials(const Scene& scene, const Frame& frame, Arena& arena, std::vector<std::string>& warnings);
@@ -34,6 +38,7 @@ class ShadingScene {
     std::vector<LightView> lights_;
     ShadingContext context_{};
     double exposure_ = 1;
+    bool all_unlit_ = false;
 };
 
 }  // namespace tessera

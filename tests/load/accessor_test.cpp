@@ -147,7 +147,14 @@ TEST(Accessor, NumbersMustBeFinite) {
 TEST(Accessor, MemoryIsLimitedBeforeItIsTaken) {
     const std::string bomb = R"("meshes":[{"primitives":[{"mode":0,"attributes":{"POSITION":0}}]}],)"
                              R"("accessors":[{"componentType":5126,"type":"VEC3","count":1000000000000}])";
-    EXPECT_NE(load_error(gltf_text(bomb), {}, ErrorCode::kLimit).find("/accessors/0: needs 12000000000000 bytes more"),
+    EXPECT_NE(load_error(gltf_text(bomb), {}, ErrorCode::kLimit).find("/accessors/0: 1000000000000 elements without"),
+              std::string::npos);
+    // Sixteen million zeros are allowed, but counted.
+    const std::string zeros = R"("meshes":[{"primitives":[{"mode":0,"attributes":{"POSITION":0}}]}],)"
+                              R"("accessors":[{"componentType":5126,"type":"VEC3","count":16000000}])";
+    LoadOptions tight;
+    tight.max_bytes = 100000000;
+    EXPECT_NE(load_error(gltf_text(zeros), tight, ErrorCode::kLimit).find("/accessors/0: needs 192000000 bytes more"),
               std::string::npos);
     LoadOptions options;
     options.max_bytes = 100000;
