@@ -9,8 +9,8 @@ namespace tessera {
 namespace {
 
 bool usable(const ClipVertex<float>& v) {
-    return std::fabs(v.x) < kLargestCoordinate && std::fabs(v.y) < kLargestCoordinate && std::fabs(v.z) < kLargestCoordinate &&
-           std::fabs(v.w) < kLargestCoordinate;
+    return std::fabs(v.x) < kLargestCoordinate && std::fabs(v.y) < kLargestCoordinate &&
+           std::fabs(v.z) < kLargestCoordinate && std::fabs(v.w) < kLargestCoordinate;
 }
 
 SnappedVertex snap_point(const HomogeneousPoint& p, const ProjectionView& projection) {
