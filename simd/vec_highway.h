@@ -125,7 +125,13 @@ struct Vector {
         store_aligned(all, a);
         for (int i = 0; i < n; ++i) p[i] = all[i];
     }
-    friend TESSERA_INLINE void store_masked(L* p, Mask m, Vector a) { store(p, select(m, a, Vector::load(p))); }
+    // Only AVX-512's masked stores are fast.
+    friend TESSERA_INLINE void store_masked(L* p, Mask m, Vector a) {
+        if constexpr (kCount == 16)
+            hn::BlendedStore(a.v, hn::RebindMask(D(), m.m), D(), p);
+        else
+            store(p, select(m, a, Vector::load(p)));
+    }
     friend TESSERA_INLINE L lane(Vector a, int i) {
         alignas(64) L all[kCount];
         store_aligned(all, a);

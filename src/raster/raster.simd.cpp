@@ -1,12 +1,11 @@
 // The rasterizer's kernels, compiled once per instruction set.
-#include "raster/setup_kernel.h"
-#include "raster/shade_kernel.h"
-#include "raster/visibility_kernel.h"
+#include "raster/film_kernel.h"
 
 namespace tessera::TESSERA_ISA_NAMESPACE {
 
 const RasterKernels& raster_kernels() {
-    static constexpr RasterKernels kKernels{&setup, &visibility, &shade_points, &develop_row};
+    static constexpr RasterKernels kKernels{&index_range,   &transform,  &setup,        &visibility,   &find_visible,
+                                            &make_surfaces, &shade_tile, &shade_points, &develop_tile, &label_tile};
     return kKernels;
 }
 

@@ -59,7 +59,7 @@ void take_labels(ReferenceEngine& engine, const RunControl& control, const Rende
         const SamplePosition at{256 * static_cast<std::int32_t>(i % width) + centre.x,
                                 256 * static_cast<std::int32_t>(i / width) + centre.y};
         out[i] = nearest[i] == 0 ? std::numeric_limits<float>::infinity()
-                                 : -engine.sampler().point(nearest[i] - 1, at).position.z;
+                                 : engine.sampler().distance(nearest[i] - 1, at);
     }
 }
 
@@ -79,7 +79,7 @@ void add_counters(RenderStats& stats, const RasterCounters& counters) {
     stats.culled_backface = counters.front.backface;
     stats.culled_degenerate = counters.front.degenerate;
     stats.clipped = counters.front.clipped;
-    stats.fragments_passed = counters.fragments_passed;
+    stats.fragments_passed = counters.tiles.fragments_passed;
     stats.pixels_covered = counters.pixels_covered;
 }
 

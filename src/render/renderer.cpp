@@ -34,7 +34,7 @@ void shade_pass(ReferenceEngine& engine, const Visibility& seen, SamplePosition 
 }
 
 // 512 transparent layers all over a tile; some hundred MiB of working memory per thread.
-constexpr std::size_t kMostFragmentsPerTile = 512 * kTilePixels;
+constexpr std::size_t kMostFragmentsPerTile = 512 * 64 * 64;
 
 // The tile rasterizer: visibility, shading and film inside each tile.
 void draw_tiles(const Frame& frame, const ShadingScene& shading, const RenderOptions& options, Arena& arena,
@@ -50,7 +50,7 @@ void draw_tiles(const Frame& frame, const ShadingScene& shading, const RenderOpt
     settings.max_fragments = std::min(control.max_fragments, kMostFragmentsPerTile);
     settings.checkpoint = control.checkpoint;
     const RasterTargets targets = make_planes(options, result);
-    add_counters(result.stats, draw_raster(frame, shading.context(), settings, targets, arena));
+    add_counters(result.stats, RasterEngine().draw(frame, shading.context(), settings, targets, arena));
     watch.phase("tiles");
     result.stats.isa = settings.isa;
     result.stats.threads = arena.threads();
