@@ -2,7 +2,7 @@
 // kernel file, once per instruction set.
 #pragma once
 
-#include "raster/shade_kernel.h"
+#include "raster/visibility_kernel.h"
 
 namespace tessera::TESSERA_ISA_NAMESPACE {
 

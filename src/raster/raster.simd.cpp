@@ -1,7 +1,11 @@
-// The rasterizer's kernels, compiled once per instruction set.
+// The rasterizer's kernels but for shading, compiled once per instruction set, and the table of all.
 #include "raster/film_kernel.h"
 
 namespace tessera::TESSERA_ISA_NAMESPACE {
+
+// shade.simd.cpp
+void shade_tile(const ShadeJob& job);
+void shade_points(const ShadeJob& job);
 
 const RasterKernels& raster_kernels() {
     static constexpr RasterKernels kKernels{&index_range,   &transform,  &setup,        &visibility,   &find_visible,

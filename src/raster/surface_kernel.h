@@ -44,6 +44,25 @@ struct CornerArrays {
     }
 };
 
+inline void find_visible(VisibleJob& job) {
+    constexpr int kWidth = kLanes<Float>;
+    __builtin_memset(job.seen, 0, job.triangle_count + 1);
+    std::uint32_t last = 0;
+    for (int at = 0; at < job.pixels; at += kWidth) {
+        const Uint ids = load<Uint>(job.ordinal + at);
+        if (all((ids == Uint(last)) | (ids == Uint(0u)))) continue;
+        for (int lane = 0; lane < kWidth; ++lane) {
+            last = job.ordinal[at + lane];
+            job.seen[last] = 1;
+        }
+    }
+    job.count = 0;
+    for (std::uint32_t i = 1; i <= job.triangle_count; ++i) {
+        job.list[job.count] = i;
+        job.count += job.seen[i];
+    }
+}
+
 inline void make_surfaces(const SurfaceJob& job) {
     constexpr std::uint32_t kWidth = kLanes<Float>;
     const InstanceView& instance = *job.instance;

@@ -17,11 +17,6 @@ void make_record(const InstanceView& instance, std::uint32_t triangle, const Pro
     if (setup.visible()) make_surface_record(instance, triangle, setup, projection, layout, record);
 }
 
-bool same_layout(const SurfaceLayout& a, const SurfaceLayout& b) {
-    return a.count == b.count && a.normal == b.normal && a.tangent == b.tangent && a.color == b.color &&
-           a.depth == b.depth && std::equal(std::begin(a.uv), std::end(a.uv), std::begin(b.uv));
-}
-
 // A pixel of a tile, whose pixels lie as blocks.
 struct TilePixel {
     int x, y;
@@ -54,7 +49,7 @@ TileTask::TileTask(const Frame& f, const ShadingContext& s, const RasterSettings
         if (kinds.size() <= instance.material) kinds.resize(instance.material + 1);
         std::vector<std::uint32_t>& same_material = kinds[instance.material];
         const auto found = std::find_if(same_material.begin(), same_material.end(), [&](std::uint32_t other) {
-            return same_layout(layouts[other], layouts[i]);
+            return layouts[other] == layouts[i];
         });
         batch_of.push_back(found == same_material.end() ? i : *found);
         if (batch_of[i] == i) same_material.push_back(i);

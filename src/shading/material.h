@@ -31,11 +31,12 @@ struct MaterialView {
     TESSERA_INLINE const TextureInput& input(TextureSlot slot) const { return inputs[static_cast<int>(slot)]; }
 };
 
-// The value of a texture input at a point; white where the material has none.
-template <class F>
+// The value of a texture input at a point; white where the material has none. Here and below
+// kTextured = false is for materials without any texture: the same bits, less code.
+template <bool kTextured = true, class F>
 TESSERA_INLINE Vec4T<F> read_input(const MaterialView& m, TextureSlot slot, const SurfacePoint<F>& s) {
     const TextureInput& in = m.input(slot);
-    if (!in.texture) return {F(1.0f), F(1.0f), F(1.0f), F(1.0f)};
+    if (!kTextured || !in.texture) return {F(1.0f), F(1.0f), F(1.0f), F(1.0f)};
     const float* r = in.transform;
     const Vec2T<F>& uv = s.uv[in.uv_set];
     const Footprint<F>& d = s.footprint[in.uv_set];
@@ -46,10 +47,10 @@ TESSERA_INLINE Vec4T<F> read_input(const MaterialView& m, TextureSlot slot, cons
 }
 
 // Base colour and alpha: factor, texture and vertex colour.
-template <class F>
+template <bool kTextured = true, class F>
 TESSERA_INLINE Vec4T<F> base_color(const MaterialView& m, const SurfacePoint<F>& s) {
     const Vec4T<F> factor{F(m.base_color[0]), F(m.base_color[1]), F(m.base_color[2]), F(m.base_color[3])};
-    return factor * read_input(m, TextureSlot::kBaseColor, s) * s.color;
+    return factor * read_input<kTextured>(m, TextureSlot::kBaseColor, s) * s.color;
 }
 
 // Alpha as the alpha mode sees it: 1 for opaque materials, 0 or 1 for cut-outs.
@@ -69,9 +70,9 @@ struct LobeParameters {
     F alpha, metallic, roughness, occlusion;
 };
 
-template <class F>
+template <bool kTextured = true, class F>
 TESSERA_INLINE Vec3T<F> shading_normal(const MaterialView& m, const SurfacePoint<F>& s) {
-    if (!m.input(TextureSlot::kNormal).texture) return s.normal;
+    if (!kTextured || !m.input(TextureSlot::kNormal).texture) return s.normal;
     const Vec4T<F> texel = read_input(m, TextureSlot::kNormal, s);
     const F scale(m.normal_scale);
     const F x = (texel.x * F(2.0f) - F(1.0f)) * scale, y = (texel.y * F(2.0f) - F(1.0f)) * scale;
@@ -80,20 +81,20 @@ TESSERA_INLINE Vec3T<F> shading_normal(const MaterialView& m, const SurfacePoint
     return normalize_or((s.tangent * x + s.bitangent * y) * s.side + s.normal * z, s.normal);
 }
 
-template <class F>
+template <bool kTextured = true, class F>
 TESSERA_INLINE LobeParameters<F> evaluate_material(const MaterialView& m, const SurfacePoint<F>& s,
                                                    const Vec3T<F>& view) {
     LobeParameters<F> p;
-    const Vec4T<F> base = base_color(m, s);
+    const Vec4T<F> base = base_color<kTextured>(m, s);
     p.base = base.xyz();
     p.alpha = coverage_of_alpha(m, base.w);
     p.view = view;
-    p.normal = shading_normal(m, s);
-    p.emission = Vec3T<F>::load(m.emission) * read_input(m, TextureSlot::kEmissive, s).xyz();
-    const Vec4T<F> mr = read_input(m, TextureSlot::kMetallicRoughness, s);
+    p.normal = shading_normal<kTextured>(m, s);
+    p.emission = Vec3T<F>::load(m.emission) * read_input<kTextured>(m, TextureSlot::kEmissive, s).xyz();
+    const Vec4T<F> mr = read_input<kTextured>(m, TextureSlot::kMetallicRoughness, s);
     p.metallic = saturate(F(m.metallic) * mr.z);
     p.roughness = saturate(F(m.roughness) * mr.y);
-    const F occlusion = read_input(m, TextureSlot::kOcclusion, s).x;
+    const F occlusion = read_input<kTextured>(m, TextureSlot::kOcclusion, s).x;
     p.occlusion = F(1.0f) + F(m.occlusion_strength) * (occlusion - F(1.0f));
     return p;
 }

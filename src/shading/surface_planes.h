@@ -20,12 +20,18 @@ struct Plane {
 };
 
 // Which planes a triangle of an instance needs for its material: plane 0 is 1 / w; the others are
-// where the members say, or absent (-1). `depth` (distance along the view axis) is needed without
-// perspective only.
+// where the members say, or absent (-1). `depth` is the distance along the view axis, which 1 / w says
+// with perspective. Unlit surfaces have no normal, and without perspective no position.
 struct SurfaceLayout {
     int count = 1;
     int normal = -1, tangent = -1, color = -1, depth = -1;
     int uv[kMaxUvSets] = {-1, -1, -1, -1};
+
+    TESSERA_INLINE bool operator==(const SurfaceLayout& o) const {
+        bool equal = count == o.count && normal == o.normal && tangent == o.tangent && color == o.color;
+        for (int i = 0; i < kMaxUvSets; ++i) equal = equal && uv[i] == o.uv[i];
+        return equal && depth == o.depth;
+    }
 };
 inline constexpr int kMaxSurfacePlanes = 1 + 3 + 3 + 4 + 1 + 2 * kMaxUvSets;
 
@@ -33,9 +39,9 @@ inline constexpr int kMaxSurfacePlanes = 1 + 3 + 3 + 4 + 1 + 2 * kMaxUvSets;
 // the bitangent), then three floats per plane, padded to a multiple of four.
 inline constexpr int kSurfaceHeader = 4;
 inline constexpr int kMaxSurfaceFloats = (kSurfaceHeader + 3 * kMaxSurfacePlanes + 3) / 4 * 4;
-inline int surface_floats(const SurfaceLayout& layout) { return (kSurfaceHeader + 3 * layout.count + 3) / 4 * 4; }
+TESSERA_INLINE constexpr int surface_floats(const SurfaceLayout& layout) { return (kSurfaceHeader + 3 * layout.count + 3) / 4 * 4; }
 
-inline SurfaceLayout surface_layout(const MeshView& mesh, const MaterialView& material, bool orthographic) {
+TESSERA_INLINE SurfaceLayout surface_layout(const MeshView& mesh, const MaterialView& material, bool orthographic) {
     SurfaceLayout l;
     const auto add = [&l](int numbers) {
         const int first = l.count;
@@ -51,7 +57,7 @@ inline SurfaceLayout surface_layout(const MeshView& mesh, const MaterialView& ma
         if (used && mesh.uvs[set]) l.uv[set] = add(2);
     }
     if (mesh.colors) l.color = add(4);
-    if (orthographic) l.depth = add(1);
+    if (lit && orthographic) l.depth = add(1);
     return l;
 }
 
@@ -61,7 +67,7 @@ struct PictureRays {
     float x_scale, x_offset, y_scale, y_offset;  // on positions in 1/256 pixel
     bool orthographic;
 
-    explicit PictureRays(const ProjectionView& p) : orthographic(p.orthographic) {
+    TESSERA_INLINE explicit PictureRays(const ProjectionView& p) : orthographic(p.orthographic) {
         const float* m = p.clip_from_camera;
         const double mx = static_cast<double>(m[0]), my = static_cast<double>(m[5]);
         const double left = orthographic ? -1.0 - static_cast<double>(m[3]) : -1.0 + static_cast<double>(m[2]);
@@ -202,7 +208,7 @@ TESSERA_INLINE SurfacePoint<F> surface_point(const SurfaceLayout& l, const Pictu
     const auto usable = v[0] > F(1e-30f);
     const F w = one / select(usable, v[0], one);
     const F ray_x = x * F(rays.x_scale) + F(rays.x_offset), ray_y = y * F(rays.y_scale) + F(rays.y_offset);
-    if (rays.orthographic)
+    if (l.depth >= 0)
         s.position = {ray_x, ray_y, -v[l.depth] * w};
     else
         s.position = {ray_x * w, ray_y * w, -w};
