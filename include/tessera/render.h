@@ -1,6 +1,6 @@
 // Rendering: a scene, a view and options in, planes of pixels and statistics out. render() keeps no
 // global state; any number may run at once. It throws tessera::Error: kUsage for options that make
-// no sense, kLimit and kCancelled while rendering.
+// no sense, kLimit and kCancelled while rendering. To draw one scene many times: renderer.h.
 #pragma once
 
 #include <tessera/export.h>
@@ -33,6 +33,14 @@ struct View {
     Vec3 up{0, 1, 0};
     std::optional<float> yfov;  // radians; default 35 degrees
     bool frame_bounds = false;  // ignore the scene's cameras
+    // For hosts that bring their own matrices and must match another renderer to the pixel: both or
+    // neither, in place of all of the above. `clip_from_world` follows OpenGL (y up, z from -w at the
+    // near plane to w at the far one); of its floats x, y and w come as they are, exactly so for nodes
+    // without a transform, and depth stays Tessera's: z' = (w - z) / 2. `camera_from_world` is the rigid
+    // part, into the space where shading is done: eye at the origin, looking along -Z.
+    std::optional<Mat4> clip_from_world, camera_from_world;
+
+    friend bool operator==(const View&, const View&) = default;
 };
 
 enum class Lighting : std::uint8_t {
@@ -53,12 +61,14 @@ struct RenderOptions {
     int samples = 4;                   // per pixel, 1 .. 256, at fixed positions of 1/256 pixel
     std::optional<float> exposure_ev;  // radiance * 2^ev; unset: automatic
     ToneMap tone_map = ToneMap::kNeutral;
-    std::optional<Vec4> background = Vec4{1, 1, 1, 1};  // display RGB (sRGB-encoded) and alpha; unset: transparent
+    Encoding encoding = Encoding::kSrgb;                // of the colour plane
+    std::optional<Vec4> background = Vec4{1, 1, 1, 1};  // RGB as the colour plane stores it, alpha; unset: transparent
     int threads = 0;                                    // 0: what the process may use
     Isa isa = Isa::kAuto;
 
-    // Planes wanted besides the colour; labels are taken at the pixel centre.
-    bool want_linear = false, want_depth = false, want_primitive = false;
+    // Planes wanted; labels (depth, primitive) are taken at the pixel centre. Nothing is shaded for a
+    // picture without colour and linear planes.
+    bool want_color = true, want_linear = false, want_depth = false, want_primitive = false;
 
     std::uint64_t max_bytes = std::uint64_t{4} << 30;  // memory that rendering may take
     // Called from any thread, but one call at a time: rising from 0 to 1, and true to stop (render()
@@ -75,12 +85,13 @@ struct RenderStats {
     std::uint64_t culled_frustum = 0, culled_backface = 0, culled_degenerate = 0, clipped = 0;
     std::uint64_t pixels_covered = 0;                       // with at least one sample hit
     std::uint64_t fragments_passed = 0;                     // samples that passed the depth test (raster), hits (trace)
-    std::uint64_t color_hash = 0;                           // hash_pixels() of the colour plane
+    std::uint64_t color_hash = 0;                           // hash_pixels() of the colour plane, by render() only
     double exposure = 1;                                    // factor on radiance
     std::vector<std::pair<std::string, double>> phases_ms;  // wall time by phase, in order
     double frame_ms = 0, cpu_ms = 0;
 };
 
+// The planes that were wanted; the others are empty.
 struct RenderResult {
     Image color;      // kRgba8, display-ready, straight alpha
     Image linear;     // kRgba32f, scene radiance before exposure, premultiplied alpha, no background

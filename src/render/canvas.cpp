@@ -1,41 +1,55 @@
 #include "render/canvas.h"
 
+#include <algorithm>
 #include <limits>
 
 namespace tessera {
+namespace {
+
+// The plane's pixels, with the memory that it has when size and format are right; null when not wanted.
+template <class T>
+T* make_plane(bool wanted, const RenderOptions& options, PixelFormat format, Image& plane) {
+    const bool fits = plane.width() == options.width && plane.height() == options.height && plane.format() == format;
+    if (!wanted)
+        plane = {};
+    else if (plane.empty() || !fits)
+        plane = Image(options.width, options.height, format);
+    return wanted ? plane.data<T>() : nullptr;
+}
+
+}  // namespace
 
 Canvas::Canvas(const RenderOptions& options) : options_(options) {
     const auto pixels = static_cast<std::size_t>(options.width) * static_cast<std::size_t>(options.height);
-    sums_.assign(4 * pixels, 0.0f);
+    if (options.want_color || options.want_linear) sums_.assign(4 * pixels, 0.0f);
     hit_.assign(pixels, 0);
 }
 
-void Canvas::develop(const FilmView& film, RenderResult& result) const {
-    result.color = Image(options_.width, options_.height, PixelFormat::kRgba8);
-    if (options_.want_linear) result.linear = Image(options_.width, options_.height, PixelFormat::kRgba32f);
-    auto* color = result.color.data<std::uint8_t>();
-    float* linear = options_.want_linear ? result.linear.data<float>() : nullptr;
+void Canvas::develop(const FilmView& film, const RasterTargets& targets, RenderStats& stats) const {
     const float weight = 1.0f / static_cast<float>(options_.samples);
     for (std::size_t pixel = 0; pixel < hit_.size(); ++pixel) {
+        stats.pixels_covered += hit_[pixel] != 0;
+        if (!is_shaded()) continue;
         const float* sum = sums_.data() + 4 * pixel;
         const Vec3T<float> mean{sum[0] * weight, sum[1] * weight, sum[2] * weight};
         const float alpha = sum[3] * weight;
-        const DisplayPixel<float> d = tessera::develop(film, mean, alpha);
-        color[4 * pixel + 0] = static_cast<std::uint8_t>(d.r);
-        color[4 * pixel + 1] = static_cast<std::uint8_t>(d.g);
-        color[4 * pixel + 2] = static_cast<std::uint8_t>(d.b);
-        color[4 * pixel + 3] = static_cast<std::uint8_t>(d.a);
-        if (linear) {
+        if (targets.rgba) {
+            const DisplayPixel<float> d = tessera::develop(film, mean, alpha);
+            targets.rgba[4 * pixel + 0] = static_cast<std::uint8_t>(d.r);
+            targets.rgba[4 * pixel + 1] = static_cast<std::uint8_t>(d.g);
+            targets.rgba[4 * pixel + 2] = static_cast<std::uint8_t>(d.b);
+            targets.rgba[4 * pixel + 3] = static_cast<std::uint8_t>(d.a);
+        }
+        if (targets.linear) {
             const float values[4] = {mean.x, mean.y, mean.z, alpha};
             // The one NaN that may be: a file with broken numbers gives the same bits everywhere.
-            for (std::size_t i = 0; i < 4; ++i) linear[4 * pixel + i] = values[i] == values[i] ? values[i] : 0.0f;
+            for (std::size_t i = 0; i < 4; ++i)
+                targets.linear[4 * pixel + i] = values[i] == values[i] ? values[i] : 0.0f;
         }
-        result.stats.pixels_covered += hit_[pixel] != 0;
     }
 }
 
-void take_labels(ReferenceEngine& engine, const RunControl& control, const RenderOptions& options,
-                 RenderResult& result) {
+void take_labels(ReferenceEngine& engine, const RunControl& control, const RasterTargets& targets) {
     const SamplePosition centre{128, 128};
     const Visibility seen = engine.see(centre, control);
     std::vector<std::uint32_t> nearest = seen.triangle;
@@ -46,20 +60,14 @@ void take_labels(ReferenceEngine& engine, const RunControl& control, const Rende
                                 256 * static_cast<std::int32_t>(f.pixel / width) + centre.y};
         if (engine.sampler().alpha(f.triangle, at) >= 0.5f) nearest[f.pixel] = f.triangle + 1;
     }
-    if (options.want_primitive) {
-        result.primitive = Image(options.width, options.height, PixelFormat::kU32);
-        auto* out = result.primitive.data<std::uint32_t>();
-        for (std::size_t i = 0; i < nearest.size(); ++i) out[i] = nearest[i];
-    }
-    if (!options.want_depth) return;
-    result.depth = Image(options.width, options.height, PixelFormat::kF32);
-    float* out = result.depth.data<float>();
+    if (targets.triangle) std::copy(nearest.begin(), nearest.end(), targets.triangle);
+    if (!targets.distance) return;
     for (std::size_t i = 0; i < nearest.size(); ++i) {
         const auto width = static_cast<std::size_t>(seen.width);
         const SamplePosition at{256 * static_cast<std::int32_t>(i % width) + centre.x,
                                 256 * static_cast<std::int32_t>(i / width) + centre.y};
-        out[i] = nearest[i] == 0 ? std::numeric_limits<float>::infinity()
-                                 : engine.sampler().distance(nearest[i] - 1, at);
+        targets.distance[i] = nearest[i] == 0 ? std::numeric_limits<float>::infinity()
+                                              : engine.sampler().distance(nearest[i] - 1, at);
     }
 }
 
@@ -85,21 +93,10 @@ void add_counters(RenderStats& stats, const RasterCounters& counters) {
 
 RasterTargets make_planes(const RenderOptions& options, RenderResult& result) {
     RasterTargets targets;
-    const int w = options.width, h = options.height;
-    result.color = Image(w, h, PixelFormat::kRgba8);
-    targets.rgba = result.color.data<std::uint8_t>();
-    if (options.want_linear) {
-        result.linear = Image(w, h, PixelFormat::kRgba32f);
-        targets.linear = result.linear.data<float>();
-    }
-    if (options.want_depth) {
-        result.depth = Image(w, h, PixelFormat::kF32);
-        targets.distance = result.depth.data<float>();
-    }
-    if (options.want_primitive) {
-        result.primitive = Image(w, h, PixelFormat::kU32);
-        targets.triangle = result.primitive.data<std::uint32_t>();
-    }
+    targets.rgba = make_plane<std::uint8_t>(options.want_color, options, PixelFormat::kRgba8, result.color);
+    targets.linear = make_plane<float>(options.want_linear, options, PixelFormat::kRgba32f, result.linear);
+    targets.distance = make_plane<float>(options.want_depth, options, PixelFormat::kF32, result.depth);
+    targets.triangle = make_plane<std::uint32_t>(options.want_primitive, options, PixelFormat::kU32, result.primitive);
     return targets;
 }
 

@@ -14,15 +14,19 @@ class Canvas {
   public:
     explicit Canvas(const RenderOptions& options);
 
+    // Whether any colour is wanted. Else pixels are only marked as covered.
+    bool is_shaded() const { return !sums_.empty(); }
+    void mark(std::size_t pixel) { hit_[pixel] = 1; }
+
     // Adds one sample's colour to a pixel.
     void add(std::size_t pixel, const Vec3T<float>& premultiplied, float alpha) {
         float* p = sums_.data() + 4 * pixel;
         p[0] += premultiplied.x, p[1] += premultiplied.y, p[2] += premultiplied.z, p[3] += alpha;
         hit_[pixel] = 1;
     }
-
-    // Box-filters, develops and writes result.color, result.linear and the count of covered pixels.
-    void develop(const FilmView& film, RenderResult& result) const;
+    // Box-filters, develops and writes the colour and linear planes that are wanted and the count of
+    // covered pixels.
+    void develop(const FilmView& film, const RasterTargets& targets, RenderStats& stats) const;
 
   private:
     const RenderOptions& options_;
@@ -32,15 +36,14 @@ class Canvas {
 
 // Depth and primitive planes, at the pixel centre, of the nearest surface with alpha of at least one
 // half.
-void take_labels(ReferenceEngine& engine, const RunControl& control, const RenderOptions& options,
-                 RenderResult& result);
+void take_labels(ReferenceEngine& engine, const RunControl& control, const RasterTargets& targets);
 
 // Adds a pass' counters to the statistics. The culling counters are those of the first pass: the
 // others cull the same triangles again.
 void add_counters(RenderStats& stats, const VisibilityCounters& counters, bool first);
 void add_counters(RenderStats& stats, const RasterCounters& counters);
 
-// Allocates the planes that the options ask for, for an engine that writes them itself.
+// The planes that the options ask for, made where `result` does not have them yet; the others are let go.
 RasterTargets make_planes(const RenderOptions& options, RenderResult& result);
 
 }  // namespace tessera

@@ -35,6 +35,7 @@ void check_options(const RenderOptions& o) {
         refuse("picture size " + std::to_string(o.width) + "x" + std::to_string(o.height) + ": sides must be 1 to " +
                std::to_string(kMaxImageSide));
     if (o.engine > Engine::kReferenceTrace) refuse("unknown engine");
+    if (o.encoding > Encoding::kLinear) refuse("unknown encoding");
     if (o.samples < 1 || o.samples > 256) refuse("samples must be 1 to 256");
     if (o.exposure_ev && !(std::fabs(*o.exposure_ev) <= 64.0f)) refuse("exposure must be within 64 EV");
     if (o.ambient && !(*o.ambient >= 0.0f && *o.ambient < 1e9f)) refuse("ambient radiance must not be negative");
@@ -54,11 +55,14 @@ FilmView film_view(const RenderOptions& options, double exposure) {
     FilmView film{};
     film.exposure = static_cast<float>(exposure);
     film.tone_map = options.tone_map;
+    film.encoding = options.encoding;
     if (options.background) {
         const Vec4& b = *options.background;
-        const float encoded[3] = {b.x, b.y, b.z};
+        const float stored[3] = {b.x, b.y, b.z};
         for (int i = 0; i < 3; ++i)
-            film.background[i] = static_cast<float>(linear_from_srgb(static_cast<double>(encoded[i])));
+            film.background[i] = options.encoding == Encoding::kLinear
+                                     ? stored[i]
+                                     : static_cast<float>(linear_from_srgb(static_cast<double>(stored[i])));
         film.background[3] = b.w;
     }
     return film;

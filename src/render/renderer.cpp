@@ -1,7 +1,7 @@
 // The renderer on one page: scene -> frame -> shading -> visibility and shading -> film. Everything that
 // happens to a picture happens here, in this order.
 #include <tessera/error.h>
-#include <tessera/render.h>
+#include <tessera/renderer.h>
 
 #include "core/fp_environment.h"
 #include "core/sampling.h"
@@ -17,7 +17,8 @@
 namespace tessera {
 namespace {
 
-// Shades what was seen at one sample position of every pixel and adds it to the picture.
+// Shades what was seen at one sample position of every pixel, if any colour is wanted, and adds it to the
+// picture.
 void shade_pass(ReferenceEngine& engine, const Visibility& seen, SamplePosition offset, Canvas& canvas,
                 const std::function<void(double)>& checkpoint) {
     const Fragment* transparent = seen.transparent.data();
@@ -28,6 +29,10 @@ void shade_pass(ReferenceEngine& engine, const Visibility& seen, SamplePosition 
         const Fragment* const first = transparent;
         while (transparent != end && transparent->pixel == pixel) ++transparent;
         if (seen.triangle[pixel] == 0 && first == transparent) continue;
+        if (!canvas.is_shaded()) {
+            canvas.mark(pixel);
+            continue;
+        }
         const SampleColor c = engine.shade_sample(seen, pixel, offset, first, transparent);
         canvas.add(pixel, c.premultiplied, c.alpha);
     }
@@ -36,9 +41,58 @@ void shade_pass(ReferenceEngine& engine, const Visibility& seen, SamplePosition 
 // 512 transparent layers all over a tile; some hundred MiB of working memory per thread.
 constexpr std::size_t kMostFragmentsPerTile = 512 * 64 * 64;
 
+}  // namespace
+
+// Everything that outlives a frame.
+struct Renderer::Impl {
+    Impl(const Scene& s, const RenderOptions& o)
+        : scene(s), options(o), arena(o.threads), prepared(s), shading(s, prepared.used_materials(), arena, warnings) {}
+
+    void draw(const View& view, RenderResult& result);
+    void draw_tiles(const Watchdog& watchdog, Stopwatch& watch, RenderResult& result);
+    void draw_reference(const Watchdog& watchdog, Stopwatch& watch, RenderResult& result);
+
+    const Scene& scene;
+    const RenderOptions options;
+    std::vector<std::string> warnings;  // of the materials
+    Arena arena;
+    PreparedScene prepared;
+    ShadingScene shading;
+    Frame frame;  // the latest
+    RasterEngine raster;
+};
+
+Renderer::Renderer(const Scene& scene, const RenderOptions& options) {
+    check_options(options);
+    validate(scene);
+    const FpEnvironment exact;
+    impl_ = std::make_unique<Impl>(scene, options);
+}
+
+void Renderer::Impl::draw(const View& view, RenderResult& result) {
+    const FpEnvironment exact;
+    result.stats = {};
+    Stopwatch watch(result.stats);
+    const Watchdog watchdog(options);
+
+    make_frame(prepared, view, options.width, options.height, frame);
+    shading.light(scene, frame, options);
+    watch.phase("evaluate");
+
+    if (options.engine == Engine::kRaster)
+        draw_tiles(watchdog, watch, result);
+    else
+        draw_reference(watchdog, watch, result);
+
+    result.warnings = frame.warnings;
+    result.warnings.insert(result.warnings.end(), warnings.begin(), warnings.end());
+    result.stats.engine = options.engine;
+    result.stats.exposure = shading.exposure();
+    watch.finish();
+}
+
 // The tile rasterizer: visibility, shading and film inside each tile.
-void draw_tiles(const Frame& frame, const ShadingScene& shading, const RenderOptions& options, Arena& arena,
-                const Watchdog& watchdog, Stopwatch& watch, RenderResult& result) {
+void Renderer::Impl::draw_tiles(const Watchdog& watchdog, Stopwatch& watch, RenderResult& result) {
     RasterSettings settings;
     for (int sample = 0; sample < options.samples; ++sample) {
         const SampleOffset s = sample_offset(sample, options.samples);
@@ -50,17 +104,19 @@ void draw_tiles(const Frame& frame, const ShadingScene& shading, const RenderOpt
     settings.max_fragments = std::min(control.max_fragments, kMostFragmentsPerTile);
     settings.checkpoint = control.checkpoint;
     const RasterTargets targets = make_planes(options, result);
-    add_counters(result.stats, RasterEngine().draw(frame, shading.context(), settings, targets, arena));
+    add_counters(result.stats, raster.draw(frame, shading.context(), settings, targets, arena));
     watch.phase("tiles");
     result.stats.isa = settings.isa;
     result.stats.threads = arena.threads();
 }
 
 // The reference engines: pass by pass, everything in full.
-void draw_reference(const Frame& frame, const ShadingScene& shading, const RenderOptions& options,
-                    const Watchdog& watchdog, Stopwatch& watch, RenderResult& result) {
+void Renderer::Impl::draw_reference(const Watchdog& watchdog, Stopwatch& watch, RenderResult& result) {
     const bool tracing = options.engine == Engine::kReferenceTrace;
+    if (tracing && !is_centred(frame.projection))
+        throw Error(ErrorCode::kUsage, "reference-trace needs a picture that is centred on the camera's axis");
     ReferenceEngine engine(frame, shading.context(), tracing, options.shadows);
+    const RasterTargets targets = make_planes(options, result);
     watch.phase("build");
 
     Canvas canvas(options);
@@ -73,41 +129,35 @@ void draw_reference(const Frame& frame, const ShadingScene& shading, const Rende
         shade_pass(engine, seen, offset, canvas, watchdog.control(2 * sample + 1, 2 * options.samples).checkpoint);
         watch.phase("shading");
     }
-    if (options.want_depth || options.want_primitive) {
-        take_labels(engine, watchdog.control(0, 0), options, result);
+    if (targets.distance || targets.triangle) {
+        take_labels(engine, watchdog.control(0, 0), targets);
         watch.phase("labels");
     }
-    canvas.develop(shading.film(options), result);
+    canvas.develop(shading.film(options), targets, result.stats);
     watch.phase("film");
 }
 
-}  // namespace
+Renderer::~Renderer() = default;
+Renderer::Renderer(Renderer&&) noexcept = default;
+Renderer& Renderer::operator=(Renderer&&) noexcept = default;
+
+void Renderer::draw(RenderResult& result) { impl_->draw(impl_->options.view, result); }
+void Renderer::draw(const View& view, RenderResult& result) { impl_->draw(view, result); }
+const RenderOptions& Renderer::options() const { return impl_->options; }
 
 RenderResult render(const Scene& scene, const RenderOptions& options) {
-    check_options(options);
-    validate(scene);
-    const FpEnvironment exact;
-    RenderResult result;
-    Stopwatch watch(result.stats);
-    const Watchdog watchdog(options);
-
-    const Frame frame = make_frame(scene, options.view, options.width, options.height);
-    result.warnings = frame.warnings;
-    watch.phase("evaluate");
-
-    Arena arena(options.threads);
-    const ShadingScene shading(scene, frame, options, arena, result.warnings);
+    RenderStats whole;
+    Stopwatch watch(whole);
+    Renderer renderer(scene, options);
     watch.phase("prepare");
-
-    if (options.engine == Engine::kRaster)
-        draw_tiles(frame, shading, options, arena, watchdog, watch, result);
-    else
-        draw_reference(frame, shading, options, watchdog, watch, result);
-
-    result.stats.engine = options.engine;
-    result.stats.exposure = shading.exposure();
-    result.stats.color_hash = hash_pixels(result.color);
+    RenderResult result;
+    renderer.draw(result);
+    if (options.want_color) result.stats.color_hash = hash_pixels(result.color);
     watch.finish();
+    auto& phases = result.stats.phases_ms;
+    phases.insert(phases.begin(), whole.phases_ms.front());
+    result.stats.frame_ms = whole.frame_ms;
+    result.stats.cpu_ms = whole.cpu_ms;
     return result;
 }
 
