@@ -21,14 +21,6 @@ TESSERA_INLINE void store_records(Pointer&& pointer, float a, float b, float c, 
 // kLanes consecutive records of three floats.
 TESSERA_INLINE void load_triples(const float* p, float& a, float& b, float& c) { a = p[0], b = p[1], c = p[2]; }
 
-// The nearest integer, ties to even, of numbers below 2^31 in magnitude; others give any integer.
-TESSERA_INLINE std::int32_t nearest_int(float a) {
-#if defined(__SSE2__)
-    return _mm_cvtss_si32(_mm_set_ss(a));
-#else
-    return to_int(round_even(a));
-#endif
-}
 TESSERA_INLINE std::uint32_t or3(std::uint32_t a, std::uint32_t b, std::uint32_t c) { return a | b | c; }
 TESSERA_INLINE std::int32_t or3(std::int32_t a, std::int32_t b, std::int32_t c) { return a | b | c; }
 // The least of the lanes; which zero it is where both signs occur is not specified.
@@ -110,17 +102,6 @@ TESSERA_INLINE void load_triples(const float* p, Float& a, Float& b, Float& c) {
     hn::LoadInterleaved3(Tag<float>(), p, a.v, b.v, c.v);
 }
 
-TESSERA_INLINE Int nearest_int(Float a) {
-#if defined(__AVX512F__)
-    return Int(Raw<std::int32_t>{_mm512_cvtps_epi32(a.v.raw)});
-#elif defined(__AVX2__)
-    return Int(Raw<std::int32_t>{_mm256_cvtps_epi32(a.v.raw)});
-#elif defined(__SSE2__)
-    return Int(Raw<std::int32_t>{_mm_cvtps_epi32(a.v.raw)});
-#else
-    return Int(hn::NearestInt(a.v));
-#endif
-}
 TESSERA_INLINE Int or3(Int a, Int b, Int c) { return Int(hn::Or3(a.v, b.v, c.v)); }
 TESSERA_INLINE Uint or3(Uint a, Uint b, Uint c) { return Uint(hn::Or3(a.v, b.v, c.v)); }
 TESSERA_INLINE float least_lane(Float a) { return hn::GetLane(hn::MinOfLanes(Tag<float>(), a.v)); }

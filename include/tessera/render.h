@@ -49,6 +49,13 @@ enum class Lighting : std::uint8_t {
     kStudio,  // three directional lights and ambient light, fixed to the camera
 };
 
+// How the tile rasterizer works: its speed and its statistics, never a pixel.
+struct RasterTuning {
+    int tile_side = 0;           // 32, 64 or 128 pixels; 0: chosen by picture and threads
+    bool hierarchical_z = true;  // leave out blocks of pixels that are hidden
+    bool count_samples = true;   // samples_tested and fragments_passed; costs a few percent
+};
+
 struct RenderOptions {
     int width = 1024, height = 768;  // pixels, 1 .. kMaxImageSide
     Engine engine = Engine::kRaster;
@@ -63,6 +70,7 @@ struct RenderOptions {
     ToneMap tone_map = ToneMap::kNeutral;
     Encoding encoding = Encoding::kSrgb;                // of the colour plane
     std::optional<Vec4> background = Vec4{1, 1, 1, 1};  // RGB as the colour plane stores it, alpha; unset: transparent
+    RasterTuning raster;
     int threads = 0;                                    // 0: what the process may use
     Isa isa = Isa::kAuto;
 
@@ -83,6 +91,10 @@ struct RenderStats {
     int threads = 1;
     std::uint64_t triangles = 0;  // submitted
     std::uint64_t culled_frustum = 0, culled_backface = 0, culled_degenerate = 0, clipped = 0;
+    // The tile rasterizer's: triangles that reach no sample, those drawn as masks and by blocks; samples
+    // tested for depth; blocks of 8x8 pixels filled, and left out by hierarchical Z.
+    std::uint64_t culled_no_sample = 0, small_triangles = 0, large_triangles = 0;
+    std::uint64_t samples_tested = 0, blocks_drawn = 0, blocks_hidden = 0;
     std::uint64_t pixels_covered = 0;                       // with at least one sample hit
     std::uint64_t fragments_passed = 0;                     // samples that passed the depth test (raster), hits (trace)
     std::uint64_t color_hash = 0;                           // hash_pixels() of the colour plane, by render() only

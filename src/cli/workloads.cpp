@@ -166,6 +166,7 @@ Workload build(const Description& d, int width, int height) {
     w.options.width = width;
     w.options.height = height;
     w.options.samples = 1;
+    w.options.raster.count_samples = false;
     w.options.view = view_for(d.shape, width, height);
     if (d.look != Look::kStudio) {
         add_light(w.scene);

@@ -1,10 +1,30 @@
-// From a tile's sums to the planes of the picture: colours developed, labels written. Part of the
+// What is seen of a tile; and from its sums to the planes of the picture: colours developed, labels
+// written. Part of the
 // kernel file, once per instruction set.
 #pragma once
 
 #include "raster/visibility_kernel.h"
 
 namespace tessera::TESSERA_ISA_NAMESPACE {
+
+inline void find_visible(VisibleJob& job) {
+    constexpr int kWidth = kLanes<Float>;
+    __builtin_memset(job.seen, 0, job.triangle_count + 1);
+    std::uint32_t last = 0;
+    for (int at = 0; at < job.pixels; at += kWidth) {
+        const Uint ids = load<Uint>(job.ordinal + at);
+        if (all((ids == Uint(last)) | (ids == Uint(0u)))) continue;
+        for (int lane = 0; lane < kWidth; ++lane) {
+            last = job.ordinal[at + lane];
+            job.seen[last] = 1;
+        }
+    }
+    job.count = 0;
+    for (std::uint32_t i = 1; i <= job.triangle_count; ++i) {
+        job.list[job.count] = i;
+        job.count += job.seen[i];
+    }
+}
 
 // Writes a vector of numbers of 4 bytes of a block to rows of the picture, as far as they lie in it.
 // (x, y): the vector's first pixel in the tile.

@@ -36,9 +36,7 @@ struct ChunkBuilder {
     // Room for a batch of triangles of each kind, and `runs` more runs.
     void reserve(std::uint32_t runs) {
         ChunkArrays& a = job.arrays;
-        if (a.small_count + kMaxLanes <= a.small_capacity && a.large_count + kMaxLanes <= a.large_capacity &&
-            a.run_count + runs <= a.run_capacity)
-            return;
+        if (a.room() >= kMaxLanes && a.run_count + runs <= a.run_capacity) return;
         chunk.small.reserve(a.small_count + kMaxLanes, a.small_count);
         chunk.large.reserve(a.large_count + kMaxLanes, a.large_count);
         chunk.unsorted.reserve(a.run_count + runs, a.run_count);
@@ -240,8 +238,8 @@ void FrontEnd::set_up(const FrontEndInput& input, const Range& range, Scratch& s
     job.tile_shift = input.grid.shift;
     job.tile_columns = input.grid.columns;
     job.vertices = scratch.vertices.data();
-    job.indices = in_a_row ? indices : nullptr;
-    job.vertex_base = low;
+    job.indices = in_a_row ? indices : scratch.count_up(corners);
+    job.vertex_base = in_a_row ? low : 0;
     input.kernels.setup(job);
     chunk.small_count = job.arrays.small_count;
     chunk.large_count = job.arrays.large_count;

@@ -61,6 +61,13 @@ class FrontEnd {
     };
     struct Scratch {
         Buffer<TransformedVertex> vertices;
+        std::vector<std::uint32_t> numbers;
+
+        // 0, 1, 2, ...: at least `count`.
+        const std::uint32_t* count_up(std::size_t count) {
+            for (std::size_t i = numbers.size(); i < count; ++i) numbers.push_back(static_cast<std::uint32_t>(i));
+            return numbers.data();
+        }
     };
 
     void make_chunks(const FrontEndInput& input, int threads);

@@ -63,8 +63,8 @@ struct BinRun {
     static constexpr std::uint32_t kLarge = 0x80000000u;
     std::uint32_t first, count;  // count | kLarge
 
-    std::uint32_t size() const { return count & ~kLarge; }
-    bool large() const { return (count & kLarge) != 0; }
+    TESSERA_INLINE std::uint32_t size() const { return count & ~kLarge; }
+    TESSERA_INLINE bool large() const { return (count & kLarge) != 0; }
 };
 
 struct FrontCounters {
@@ -80,6 +80,14 @@ struct ChunkArrays {
     std::uint32_t* run_tiles;  // the tile of every run
     std::uint32_t small_count, large_count, run_count;
     std::uint32_t small_capacity, large_capacity, run_capacity;
+
+    // How many more triangles fit of either kind, small ones with the four runs that they may need.
+    TESSERA_INLINE std::uint32_t room() const {
+        const std::uint32_t small_room = small_capacity - small_count, large_room = large_capacity - large_count;
+        const std::uint32_t run_room = (run_capacity - run_count) / 4;
+        const std::uint32_t least = small_room < large_room ? small_room : large_room;
+        return least < run_room ? least : run_room;
+    }
 };
 
 // Set-up and binning of consecutive triangles of one instance.
@@ -93,7 +101,7 @@ struct SetupJob {
     SamplePosition sample;
     int tile_shift, tile_columns;
     const TransformedVertex* vertices;
-    // Three per triangle, into `vertices` after taking away vertex_base; null: 0, 1, 2, ...
+    // Three per triangle, into `vertices` after taking away vertex_base.
     const std::uint32_t* indices;
     std::uint32_t vertex_base;
     ChunkArrays arrays;

@@ -14,18 +14,11 @@ TESSERA_INLINE void count_lanes(std::uint64_t& counter, Mask m) {
     counter += static_cast<std::uint64_t>(__builtin_popcount(mask_bits(m)));
 }
 
-// Corner k of kLanes triangles from number t on, the last one repeated.
-TESSERA_INLINE void load_corner(const SetupJob& job, std::uint32_t t, int k, Float& x, Float& y, Float& z,
-                                Uint& code) {
-    const std::uint32_t last = job.count - 1;
+// Corner k of kLanes triangles, three indices each.
+TESSERA_INLINE void load_corner(const TransformedVertex* vertices, const std::uint32_t* indices, int k, Float& x,
+                                Float& y, Float& z, Uint& code) {
     Float code_bits;
-    load_records(
-        [&](int lane) {
-            std::uint32_t n = t + static_cast<std::uint32_t>(lane);
-            n = 3 * (n < last ? n : last) + static_cast<std::uint32_t>(k);
-            return job.vertices[job.indices ? job.indices[n] - job.vertex_base : n].numbers;
-        },
-        x, y, z, code_bits);
+    load_records([&](int lane) { return vertices[indices[3 * lane + k]].numbers; }, x, y, z, code_bits);
     code = as_uint(code_bits);
 }
 
@@ -88,14 +81,23 @@ inline void setup(SetupJob& job) {
     constexpr int kWidth = kLanes<Float>;
     const Int last_x(static_cast<std::int32_t>(job.width) - 1), last_y(static_cast<std::int32_t>(job.height) - 1);
     alignas(64) float made[kWidth][sizeof(SmallTriangle) / sizeof(float)];
+    // So that indices count from the first vertex of the mesh.
+    const TransformedVertex* const vertices = job.vertices - job.vertex_base;
+    std::uint32_t rest_indices[3 * kWidth];
     alignas(64) std::int32_t vx[3][kWidth], vy[3][kWidth], tile_x[2][kWidth], tile_y[2][kWidth];
     for (std::uint32_t t = 0; t < job.count; t += kWidth) {
         const std::uint32_t left = job.count - t;
         const Mask valid = first_n<Float>(left < std::uint32_t{kWidth} ? static_cast<int>(left) : kWidth);
+        const std::uint32_t* indices = job.indices + 3 * std::size_t{t};
+        if (left < std::uint32_t{kWidth}) {  // the last triangle repeated
+            for (std::uint32_t i = 0; i < 3 * std::uint32_t{kWidth}; ++i)
+                rest_indices[i] = indices[i < 3 * left ? i : 3 * (left - 1) + i % 3];
+            indices = rest_indices;
+        }
         PictureVertex<Float> p[3];
         Float z[3];
         Uint code[3];
-        for (int k = 0; k < 3; ++k) load_corner(job, t, k, p[k].x, p[k].y, z[k], code[k]);
+        for (int k = 0; k < 3; ++k) load_corner(vertices, indices, k, p[k].x, p[k].y, z[k], code[k]);
         const Uint every = code[0] & code[1] & code[2], some = or3(code[0], code[1], code[2]);
         const Mask usable = valid & ((some & Uint(kUnusable)) == Uint(0u));
         const Mask outside = usable & ((every & Uint(~static_cast<std::uint32_t>(kOutGuard))) != Uint(0u));
@@ -120,6 +122,11 @@ inline void setup(SetupJob& job) {
         const Mask front = job.instance->handedness > 0 ? counter_clockwise : !counter_clockwise;
         const Mask facing = job.double_sided ? exact : exact & front;
         Mask keep = facing & !flat;
+        count_lanes(job.counters.frustum, outside);
+        count_lanes(job.counters.degenerate, (valid & !usable) | flat);
+        count_lanes(job.counters.backface, exact & !flat & !facing);
+        const std::uint32_t slow = mask_bits(clipped | (inside & !exact));
+        if (!(mask_bits(keep) | slow)) continue;
 
         SampleBox box;
         box.left = max((low_x + Int(255 - job.sample.x)) >> 8, Int(0));
@@ -131,14 +138,9 @@ inline void setup(SetupJob& job) {
             count_lanes(job.counters.no_sample, keep & !reached);
             keep &= reached;
         }
-        count_lanes(job.counters.frustum, outside);
-        count_lanes(job.counters.degenerate, (valid & !usable) | flat);
-        count_lanes(job.counters.backface, exact & !flat & !facing);
-
-        const std::uint32_t slow = mask_bits(clipped | (inside & !exact));
         std::uint32_t kept = mask_bits(keep);
         if (!(kept | slow)) continue;
-        job.reserve(job);
+        if (job.arrays.room() < kMaxLanes) job.reserve(job);
 
         // Counter-clockwise ones are turned, so that all run clockwise on the screen.
         const Int x[3] = {p[0].snapped_x, select(counter_clockwise, p[2].snapped_x, p[1].snapped_x),

@@ -5,9 +5,9 @@ namespace tessera::TESSERA_ISA_NAMESPACE {
 
 // A whole tile through the constant layouts; lists, which are short, as they come.
 void shade_tile(const ShadeJob& job) {
-    with_layout(job, [&](auto kind) { shade_tile_as<decltype(kind)>(job); });
+    with_kind(job, [&](auto kind) { shade_tile_as<decltype(kind)>(job); });
 }
 
-void shade_points(const ShadeJob& job) { shade_points_as<AnyLayout>(job); }
+void shade_points(const ShadeJob& job) { shade_points_as<Textured<AnyLayout>>(job); }
 
 }  // namespace tessera::TESSERA_ISA_NAMESPACE

@@ -2,8 +2,7 @@
 // reference uses with plain numbers. Part of a kernel file, once per instruction set.
 #pragma once
 
-#include "raster/raster_data.h"
-#include "simd/records.h"
+#include "raster/surface_kernel.h"
 
 namespace tessera::TESSERA_ISA_NAMESPACE {
 
@@ -18,41 +17,29 @@ struct Batch {
         : job(j), context(*j.source->shading), material(*j.material), rays(j.source->projection) {}
 };
 
-// The layouts that most scenes have are constants of the code, which then keeps all planes in
-// registers; the others are read from the job.
-struct NormalOnly {
+// Materials without any texture.
+template <class Layout>
+struct Untextured : Layout {
     static constexpr bool kTextured = false;
-    static constexpr SurfaceLayout kLayout{.count = 4, .normal = 1};
-    static constexpr const SurfaceLayout& layout(const ShadeJob&) { return kLayout; }
 };
-struct NormalAndUv {
+template <class Layout>
+struct Textured : Layout {
     static constexpr bool kTextured = true;
-    static constexpr SurfaceLayout kLayout{.count = 6, .normal = 1, .uv = {4, -1, -1, -1}};
-    static constexpr const SurfaceLayout& layout(const ShadeJob&) { return kLayout; }
-};
-struct ColorOnly {
-    static constexpr bool kTextured = false;
-    static constexpr SurfaceLayout kLayout{.count = 5, .color = 1};
-    static constexpr const SurfaceLayout& layout(const ShadeJob&) { return kLayout; }
-};
-struct AnyLayout {
-    static constexpr bool kTextured = true;
-    static const SurfaceLayout& layout(const ShadeJob& job) { return job.layout; }
 };
 
 // Calls visit(kind) with the kind of the job.
 template <class Visit>
-TESSERA_INLINE void with_layout(const ShadeJob& job, Visit&& visit) {
+TESSERA_INLINE void with_kind(const ShadeJob& job, Visit&& visit) {
     bool textured = false;
     for (const TextureInput& in : job.material->inputs) textured |= in.texture != nullptr;
-    if (!textured && job.layout == NormalOnly::kLayout) return visit(NormalOnly());
-    if (textured && job.layout == NormalAndUv::kLayout) return visit(NormalAndUv());
-    if (!textured && job.layout == ColorOnly::kLayout) return visit(ColorOnly());
-    visit(AnyLayout());
+    if (!textured && job.layout == NormalOnly::kLayout) return visit(Untextured<NormalOnly>());
+    if (textured && job.layout == NormalAndUv::kLayout) return visit(Textured<NormalAndUv>());
+    if (!textured && job.layout == ColorOnly::kLayout) return visit(Untextured<ColorOnly>());
+    visit(Textured<AnyLayout>());
 }
 
 // Triangles that a vector may show before its lanes fetch records of their own.
-inline constexpr int kFew = 4;
+inline constexpr int kFew = kLanes<Float> < 4 ? kLanes<Float> : 4;
 
 TESSERA_INLINE void blend_samples(const SurfaceLayout& l, Mask mask, const SurfaceSample<Float>& from,
                                   SurfaceSample<Float>& to) {
@@ -76,40 +63,41 @@ TESSERA_INLINE void sample_lanes(const ShadeJob& job, const Uint& place, std::ui
     const SurfaceLayout& l = Kind::layout(job);
     alignas(64) std::uint32_t places[kWidth];
     store(places, place);
-    std::uint32_t rest = used;
     const auto sample_of = [&](const float* record, SurfaceSample<Float>& out) {
         sample_planes(l, x, y, [record](int i) { return Float(record[i]); }, out);
     };
-    {
-        const std::uint32_t first = places[__builtin_ctz(rest)];
-        const float* record = job.records + first;
+    // The few triangles that the lanes show, and who shows them.
+    std::uint32_t first[kFew] = {}, rest = used;
+    Mask shows[kFew];
+    int few = 0;
+    for (; few < kFew && rest; ++few) {
+        first[few] = places[__builtin_ctz(rest)];
+        shows[few] = place == Uint(first[few]);
+        rest &= ~mask_bits(shows[few]);
+    }
+    if (!rest) {
+        const float* record = job.records + first[0];
         sample_of(record, sample);
         side = Float(record[2]);
         sign = Float(record[3]);
-        rest &= ~mask_bits(place == Uint(first));
-    }
-    if constexpr (kWidth > 1) {
-        for (int n = 1; n < kFew && rest; ++n) {
-            const std::uint32_t next = places[__builtin_ctz(rest)];
-            const Mask same = place == Uint(next);
-            const float* record = job.records + next;
+        for (int n = 1; n < few; ++n) {
+            record = job.records + first[n];
             SurfaceSample<Float> other;
             sample_of(record, other);
-            blend_samples(l, same, other, sample);
-            side = select(same, Float(record[2]), side);
-            sign = select(same, Float(record[3]), sign);
-            rest &= ~mask_bits(same);
+            blend_samples(l, shows[n], other, sample);
+            side = select(shows[n], Float(record[2]), side);
+            sign = select(shows[n], Float(record[3]), sign);
         }
-        if (!rest) return;
-        Float numbers[kMaxSurfaceFloats];
-        const int floats = surface_floats(l);
-        for (int i = 0; i < floats; i += 4)
-            load_records([&](int lane) { return job.records + places[lane] + i; }, numbers[i], numbers[i + 1],
-                         numbers[i + 2], numbers[i + 3]);
-        sample_planes(l, x, y, [&numbers](int i) { return numbers[i]; }, sample);
-        side = numbers[2];
-        sign = numbers[3];
+        return;
     }
+    Float numbers[kMaxSurfaceFloats];
+    const int floats = surface_floats(l);
+    for (int i = 0; i < floats; i += 4)
+        load_records([&](int lane) { return job.records + places[lane] + i; }, numbers[i], numbers[i + 1],
+                     numbers[i + 2], numbers[i + 3]);
+    sample_planes(l, x, y, [&numbers](int i) { return numbers[i]; }, sample);
+    side = numbers[2];
+    sign = numbers[3];
 }
 
 template <class Kind>

@@ -44,31 +44,44 @@ struct CornerArrays {
     }
 };
 
-inline void find_visible(VisibleJob& job) {
-    constexpr int kWidth = kLanes<Float>;
-    __builtin_memset(job.seen, 0, job.triangle_count + 1);
-    std::uint32_t last = 0;
-    for (int at = 0; at < job.pixels; at += kWidth) {
-        const Uint ids = load<Uint>(job.ordinal + at);
-        if (all((ids == Uint(last)) | (ids == Uint(0u)))) continue;
-        for (int lane = 0; lane < kWidth; ++lane) {
-            last = job.ordinal[at + lane];
-            job.seen[last] = 1;
-        }
+// The layouts that most scenes have are constants of the code, which then keeps all planes in
+// registers; the others are read from the job.
+struct NormalOnly {
+    static constexpr SurfaceLayout kLayout{.count = 4, .normal = 1};
+    template <class Job>
+    static TESSERA_INLINE constexpr const SurfaceLayout& layout(const Job&) {
+        return kLayout;
     }
-    job.count = 0;
-    for (std::uint32_t i = 1; i <= job.triangle_count; ++i) {
-        job.list[job.count] = i;
-        job.count += job.seen[i];
+};
+struct NormalAndUv {
+    static constexpr SurfaceLayout kLayout{.count = 6, .normal = 1, .uv = {4, -1, -1, -1}};
+    template <class Job>
+    static TESSERA_INLINE constexpr const SurfaceLayout& layout(const Job&) {
+        return kLayout;
     }
-}
+};
+struct ColorOnly {
+    static constexpr SurfaceLayout kLayout{.count = 5, .color = 1};
+    template <class Job>
+    static TESSERA_INLINE constexpr const SurfaceLayout& layout(const Job&) {
+        return kLayout;
+    }
+};
+struct AnyLayout {
+    template <class Job>
+    static TESSERA_INLINE const SurfaceLayout& layout(const Job& job) {
+        return job.layout;
+    }
+};
 
-inline void make_surfaces(const SurfaceJob& job) {
+template <class Kind>
+inline void make_surfaces_as(const SurfaceJob& job) {
     constexpr std::uint32_t kWidth = kLanes<Float>;
     const InstanceView& instance = *job.instance;
     const ProjectionView& picture = job.source->projection;
-    const int floats = surface_floats(job.layout);
-    const CornerArrays arrays(instance.mesh, job.layout);
+    const SurfaceLayout& layout = Kind::layout(job);
+    const int floats = surface_floats(layout);
+    const CornerArrays arrays(instance.mesh, layout);
     for (std::uint32_t t = 0; t < job.count; t += kWidth) {
         float* const records = job.records + std::size_t{t} * static_cast<std::size_t>(floats);
         Corner<Float> corners[3];
@@ -81,7 +94,7 @@ inline void make_surfaces(const SurfaceJob& job) {
                 const std::uint32_t n = t + lane < job.count ? t + lane : job.count - 1;
                 vertex[lane] = instance.mesh.triangles[3 * std::size_t{job.triangles[n]} + static_cast<std::size_t>(k)];
             }
-            arrays.load(job.layout, vertex, corners[k]);
+            arrays.load(layout, vertex, corners[k]);
             clip[k] = to_clip(instance.object_to_clip, corners[k].position);
             some |= out_code(clip[k]);
             p[k] = to_picture(clip[k], picture.width, picture.height);
@@ -101,7 +114,7 @@ inline void make_surfaces(const SurfaceJob& job) {
         const Float front = select(area < Float(0.0f), Float(instance.handedness), Float(-instance.handedness));
         Float numbers[kMaxSurfaceFloats];
         numbers[floats - 1] = numbers[floats - 2] = numbers[floats - 3] = Float(0.0f);
-        make_planes(instance, job.layout, corners, clip, p, front, [&](int i, Float v) { numbers[i] = v; });
+        make_planes(instance, layout, corners, clip, p, front, [&](int i, Float v) { numbers[i] = v; });
         for (int i = 0; i < floats; i += 4)
             store_records([&](int lane) { return records + lane * floats + i; }, numbers[i], numbers[i + 1],
                           numbers[i + 2], numbers[i + 3]);
@@ -113,6 +126,12 @@ inline void make_surfaces(const SurfaceJob& job) {
                                         records + static_cast<int>(lane) * floats);
         }
     }
+}
+
+inline void make_surfaces(const SurfaceJob& job) {
+    if (job.layout == NormalOnly::kLayout) return make_surfaces_as<NormalOnly>(job);
+    if (job.layout == NormalAndUv::kLayout) return make_surfaces_as<NormalAndUv>(job);
+    make_surfaces_as<AnyLayout>(job);
 }
 
 // Where the alpha of one triangle's material says that nothing is there.

@@ -87,7 +87,13 @@ void add_counters(RenderStats& stats, const RasterCounters& counters) {
     stats.culled_backface = counters.front.backface;
     stats.culled_degenerate = counters.front.degenerate;
     stats.clipped = counters.front.clipped;
+    stats.culled_no_sample = counters.front.no_sample;
+    stats.small_triangles = counters.front.small;
+    stats.large_triangles = counters.front.large;
+    stats.samples_tested = counters.tiles.samples_covered;
     stats.fragments_passed = counters.tiles.fragments_passed;
+    stats.blocks_drawn = counters.tiles.blocks_drawn;
+    stats.blocks_hidden = counters.tiles.blocks_hidden;
     stats.pixels_covered = counters.pixels_covered;
 }
 

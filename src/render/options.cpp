@@ -36,6 +36,8 @@ void check_options(const RenderOptions& o) {
                std::to_string(kMaxImageSide));
     if (o.engine > Engine::kReferenceTrace) refuse("unknown engine");
     if (o.encoding > Encoding::kLinear) refuse("unknown encoding");
+    const int side = o.raster.tile_side;
+    if (side != 0 && side != 32 && side != 64 && side != 128) refuse("tile sides are 32, 64 or 128 pixels");
     if (o.samples < 1 || o.samples > 256) refuse("samples must be 1 to 256");
     if (o.exposure_ev && !(std::fabs(*o.exposure_ev) <= 64.0f)) refuse("exposure must be within 64 EV");
     if (o.ambient && !(*o.ambient >= 0.0f && *o.ambient < 1e9f)) refuse("ambient radiance must not be negative");

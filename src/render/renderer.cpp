@@ -103,6 +103,9 @@ void Renderer::Impl::draw_tiles(const Watchdog& watchdog, Stopwatch& watch, Rend
     settings.isa = resolve_isa(options.isa);
     settings.max_fragments = std::min(control.max_fragments, kMostFragmentsPerTile);
     settings.checkpoint = control.checkpoint;
+    settings.tile_side = options.raster.tile_side;
+    settings.hierarchical_z = options.raster.hierarchical_z;
+    settings.count = options.raster.count_samples;
     const RasterTargets targets = make_planes(options, result);
     add_counters(result.stats, raster.draw(frame, shading.context(), settings, targets, arena));
     watch.phase("tiles");
