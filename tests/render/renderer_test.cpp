@@ -5,6 +5,7 @@
 #include "bench/workloads.h"
 #include "reference/workload_scene.h"
 #include "render/scenes.h"
+#include "simd/isa.h"
 
 #include <array>
 #include <cmath>
@@ -224,6 +225,20 @@ TEST(Encoding, LinearStoresValuesAndBackgroundAsTheyAre) {
     RenderOptions o = small();
     o.encoding = static_cast<Encoding>(7);
     EXPECT_THROW(render(scene, o), Error);
+}
+
+TEST(Encoding, LinearHasTheSameBitsOnEveryInstructionSet) {
+    const Scene scene = mixed_scene();
+    RenderOptions o = small(97, 61, 2);
+    o.encoding = Encoding::kLinear;
+    o.engine = Engine::kReferenceRaster;
+    const RenderResult reference = render(scene, o);
+    o.engine = Engine::kRaster;
+    for (const Isa isa : {Isa::kScalar, Isa::kSse4, Isa::kAvx2, Isa::kAvx512}) {
+        if (!isa_supported(isa)) continue;
+        o.isa = isa;
+        EXPECT_TRUE(same_bytes(render(scene, o).color, reference.color)) << name(isa);
+    }
 }
 
 }  // namespace
