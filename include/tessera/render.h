@@ -41,6 +41,15 @@ enum class Lighting : std::uint8_t {
     kStudio,  // three directional lights and ambient light, fixed to the camera
 };
 
+// What the samples of a pixel and its neighbours count for its colour, by their distance from its centre.
+// The wider ones draw the picture once per sample. Labels are not filtered.
+enum class PixelFilter : std::uint8_t {
+    kBox,       // the mean of the pixel's own samples
+    kTent,      // radius of 1 pixel
+    kGaussian,  // radius of 1.5 pixels, sigma of 1/2
+    kMitchell,  // radius of 2 pixels: Mitchell and Netravali 1988, B = C = 1/3; sharpest, slight halos
+};
+
 struct RenderOptions {
     int width = 1024, height = 768;  // pixels, 1 .. kMaxImageSide
     Engine engine = Engine::kRaster;
@@ -53,6 +62,7 @@ struct RenderOptions {
     int samples = 4;                   // per pixel, 1 .. 256, at fixed positions of 1/256 pixel
     std::optional<float> exposure_ev;  // radiance * 2^ev; unset: automatic
     ToneMap tone_map = ToneMap::kNeutral;
+    PixelFilter filter = PixelFilter::kBox;
     std::optional<Vec4> background = Vec4{1, 1, 1, 1};  // display RGB (sRGB-encoded) and alpha; unset: transparent
     int threads = 0;                                    // 0: what the process may use
     Isa isa = Isa::kAuto;
@@ -73,7 +83,7 @@ struct RenderStats {
     int threads = 1;
     std::uint64_t triangles = 0;  // submitted
     std::uint64_t culled_frustum = 0, culled_backface = 0, culled_degenerate = 0, clipped = 0;
-    std::uint64_t pixels_covered = 0;                       // with at least one sample hit
+    std::uint64_t pixels_covered = 0;                       // with at least one sample hit; filtered: of alpha > 0
     std::uint64_t fragments_passed = 0;                     // samples that passed the depth test (raster), hits (trace)
     std::uint64_t color_hash = 0;                           // hash_pixels() of the colour plane
     double exposure = 1;                                    // factor on radiance
@@ -83,7 +93,8 @@ struct RenderStats {
 
 struct RenderResult {
     Image color;      // kRgba8, display-ready, straight alpha
-    Image linear;     // kRgba32f, scene radiance before exposure, premultiplied alpha, no background
+    Image linear;     // kRgba32f, scene radiance before exposure, premultiplied alpha, no background;
+                      // filtered: kMitchell may leave radiances a little below 0
     Image depth;      // kF32, metres along the view axis; infinite where nothing was hit
     Image primitive;  // kU32, 1 + number of the triangle in submission order; 0: none
     RenderStats stats;

@@ -106,6 +106,8 @@ void add_render_options(CLI::App& app, RenderArguments& a) {
     option("Picture", "--engine", a.engine, "NAME",
            "raster (the default), reference-raster (the same bits, slowly) or reference-trace (hard shadows)");
     option("Picture", "--samples", a.samples, "N", "samples per pixel, 1 .. 256 (default 4)");
+    option("Picture", "--filter", a.filter, "NAME",
+           "box (default: the mean of a pixel's samples), tent, gaussian or mitchell, which weigh its neighbours' too");
     option("Picture", "--background", a.background, "COLOUR",
            "none (transparent), #rrggbb, #rrggbbaa, r,g,b[,a] (each 0 .. 1) or a name (default white)");
     option("Picture", "--exposure", a.exposure, "EV", "auto (default), or stops: each doubles the brightness");
@@ -155,6 +157,11 @@ RenderJob parse_render_arguments(const RenderArguments& a) {
     render.width = size.width, render.height = size.height;
     render.engine = parse_engine(a.engine);
     render.samples = static_cast<int>(parse_integer("--samples", a.samples, 1, 256));
+    render.filter = choose<PixelFilter>("--filter", a.filter,
+                                        {{"box", PixelFilter::kBox},
+                                         {"tent", PixelFilter::kTent},
+                                         {"gaussian", PixelFilter::kGaussian},
+                                         {"mitchell", PixelFilter::kMitchell}});
     render.background = parse_background("--background", a.background);
     if (a.exposure != "auto") render.exposure_ev = static_cast<float>(parse_number("--exposure", a.exposure, -40, 40));
     render.tone_map = choose<ToneMap>(

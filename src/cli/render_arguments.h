@@ -15,7 +15,7 @@ namespace tessera::cli {
 
 struct RenderArguments {
     std::string scene, output, stats;
-    std::string size = "1024x768", engine = "raster", samples = "4", aov = "color", time = "0";
+    std::string size = "1024x768", engine = "raster", samples = "4", filter = "box", aov = "color", time = "0";
     std::string camera, eye, target, up = "y", fov;
     std::string background = "white", exposure = "auto", tone_map = "neutral", color_bits;
     std::string lighting = "auto", ambient;

@@ -13,8 +13,12 @@ namespace {
 
 [[noreturn]] void refuse(const std::string& message) { throw Error(ErrorCode::kUsage, message); }
 
-// Depth, triangle and colour of every pixel while it is made, and the finished colour.
-constexpr std::uint64_t kBytesPerPixel = 4 + 4 + 16 + 4;
+// Depth, triangle and colour of every pixel while it is made, and the finished colour; a wide filter's
+// sums and its flag.
+std::uint64_t picture_bytes(const RenderOptions& o) {
+    const auto pixels = static_cast<std::uint64_t>(o.width) * static_cast<std::uint64_t>(o.height);
+    return pixels * (4 + 4 + 16 + 4 + (o.filter == PixelFilter::kBox ? 0 : 16 + 1));
+}
 
 }  // namespace
 
@@ -42,9 +46,10 @@ void check_options(const RenderOptions& o) {
     if (o.background)
         for (const float c : {o.background->x, o.background->y, o.background->z, o.background->w})
             if (!(c >= 0.0f && c <= 1.0f)) refuse("background components must be 0 to 1");
+    if (o.filter > PixelFilter::kMitchell) refuse("unknown filter");
     resolve_isa(o.isa);
     const auto pixels = static_cast<std::uint64_t>(o.width) * static_cast<std::uint64_t>(o.height);
-    if (pixels * kBytesPerPixel > o.max_bytes)
+    if (picture_bytes(o) > o.max_bytes)
         throw Error(ErrorCode::kLimit, "a picture of " + std::to_string(pixels) +
                                            " pixels needs more memory than the limit of " +
                                            std::to_string(o.max_bytes) + " bytes");
@@ -66,8 +71,7 @@ FilmView film_view(const RenderOptions& options, double exposure) {
 
 RunControl Watchdog::control(int step, int steps) const {
     RunControl control;
-    const auto pixels = static_cast<std::uint64_t>(options_.width) * static_cast<std::uint64_t>(options_.height);
-    control.max_fragments = static_cast<std::size_t>((options_.max_bytes - pixels * kBytesPerPixel) / sizeof(Fragment));
+    control.max_fragments = static_cast<std::size_t>((options_.max_bytes - picture_bytes(options_)) / sizeof(Fragment));
     control.checkpoint = [this, step, steps](double part) {
         if (!options_.cancel && !options_.progress) return;
         const std::lock_guard lock(mutex_);

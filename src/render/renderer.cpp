@@ -36,24 +36,42 @@ void shade_pass(ReferenceEngine& engine, const Visibility& seen, SamplePosition 
 // 512 transparent layers all over a tile; some hundred MiB of working memory per thread.
 constexpr std::size_t kMostFragmentsPerTile = 512 * kTilePixels;
 
-// The tile rasterizer: visibility, shading and film inside each tile.
+// The tile rasterizer: visibility, shading and film inside each tile. A filter wider than the pixel has
+// the picture drawn once per sample, and the film comes after all of them.
 void draw_tiles(const Frame& frame, const ShadingScene& shading, const RenderOptions& options, Arena& arena,
                 const Watchdog& watchdog, Stopwatch& watch, RenderResult& result) {
-    RasterSettings settings;
+    std::vector<SamplePosition> samples;
     for (int sample = 0; sample < options.samples; ++sample) {
         const SampleOffset s = sample_offset(sample, options.samples);
-        settings.samples.push_back({s.x, s.y});
+        samples.push_back({s.x, s.y});
     }
-    const RunControl control = watchdog.control(0, 1);
+    RasterSettings settings;
     settings.film = shading.film(options);
     settings.isa = resolve_isa(options.isa);
-    settings.max_fragments = std::min(control.max_fragments, kMostFragmentsPerTile);
-    settings.checkpoint = control.checkpoint;
-    const RasterTargets targets = make_planes(options, result);
-    add_counters(result.stats, draw_raster(frame, shading.context(), settings, targets, arena));
-    watch.phase("tiles");
     result.stats.isa = settings.isa;
     result.stats.threads = arena.threads();
+    RasterTargets targets = make_planes(options, result);
+    const auto draw = [&](std::vector<SamplePosition> positions, const RunControl& control, bool first) {
+        settings.samples = std::move(positions);
+        settings.max_fragments = std::min(control.max_fragments, kMostFragmentsPerTile);
+        settings.checkpoint = control.checkpoint;
+        add_counters(result.stats, draw_raster(frame, shading.context(), settings, targets, arena), first);
+        watch.phase("tiles");
+    };
+    if (options.filter == PixelFilter::kBox) return draw(std::move(samples), watchdog.control(0, 1), true);
+
+    FilterPass filter(options, &arena);
+    std::vector<float> plane(options.want_linear ? 0 : filter.plane_floats());
+    if (!options.want_linear) targets.linear = plane.data();
+    for (int sample = 0; sample < options.samples; ++sample) {
+        draw({samples[static_cast<std::size_t>(sample)]}, watchdog.control(sample, options.samples), sample == 0);
+        targets.distance = nullptr, targets.triangle = nullptr;  // the labels were taken with the first one
+        filter.add(sample, targets.linear, watchdog.control(0, 0).checkpoint);
+        watch.phase("filter");
+    }
+    develop_picture(filter.finish(), 1.0f, settings.film, options, &arena, result);
+    result.stats.pixels_covered = filter.pixels_covered();
+    watch.phase("film");
 }
 
 // The reference engines: pass by pass, everything in full.
@@ -72,6 +90,7 @@ void draw_reference(const Frame& frame, const ShadingScene& shading, const Rende
         watch.phase("visibility");
         shade_pass(engine, seen, offset, canvas, watchdog.control(2 * sample + 1, 2 * options.samples).checkpoint);
         watch.phase("shading");
+        canvas.end_sample(sample, watchdog.control(0, 0).checkpoint);
     }
     if (options.want_depth || options.want_primitive) {
         take_labels(engine, watchdog.control(0, 0), options, result);
