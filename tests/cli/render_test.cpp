@@ -147,6 +147,7 @@ TEST_F(CliRender, UsageErrorsExitWith2AndNameTheOption) {
         {{"-o", out, "--size", "64"}, "--size"},
         {{"-o", out, "--samples", "0"}, "--samples"},
         {{"-o", out, "--samples", "4x"}, "--samples"},
+        {{"-o", out, "--filter", "lanczos"}, "--filter"},
         {{"-o", out, "--eye", "1,2"}, "--eye"},
         {{"-o", out, "--target", "1,2,3"}, "--target"},
         {{"-o", out, "--camera", "0", "--eye", "1,2,3"}, "--camera"},
