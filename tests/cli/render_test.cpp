@@ -3,8 +3,12 @@
 #include "cli/run_command.h"
 
 #include <tessera/image.h>
+#include <tessera/load.h>
+#include <tessera/render.h>
 
 #include <simdjson.h>
+
+#include <algorithm>
 
 namespace {
 
@@ -118,6 +122,27 @@ TEST_F(CliRender, TransparentBackgroundHasAlpha) {
               0);
     const tessera::Image image = tessera::read_image(in_folder("a.png"));
     EXPECT_EQ(image.data<unsigned char>()[3], 0) << "the top left corner shows the sky";
+}
+
+TEST_F(CliRender, RAS7_FiltersGiveTheLibrarysPictures) {
+    using tessera::PixelFilter;
+    const std::pair<const char*, PixelFilter> filters[] = {{"box", PixelFilter::kBox},
+                                                           {"tent", PixelFilter::kTent},
+                                                           {"gaussian", PixelFilter::kGaussian},
+                                                           {"mitchell", PixelFilter::kMitchell}};
+    const tessera::Scene spheres = tessera::load_scene(scene("spheres.gltf"));
+    std::vector<std::uint64_t> hashes;
+    for (const auto& [name, filter] : filters) {
+        const Outcome run = run_command({"render", scene("spheres.gltf"), "-o", in_folder("a.png"), "-s", "40x30",
+                                         "--samples", "2", "--filter", name});
+        ASSERT_EQ(run.code, 0) << run.err;
+        tessera::RenderOptions options;
+        options.width = 40, options.height = 30, options.samples = 2, options.filter = filter;
+        hashes.push_back(tessera::hash_pixels(tessera::read_image(in_folder("a.png"))));
+        EXPECT_EQ(hashes.back(), tessera::render(spheres, options).stats.color_hash) << name;
+    }
+    std::sort(hashes.begin(), hashes.end());
+    EXPECT_EQ(std::adjacent_find(hashes.begin(), hashes.end()), hashes.end()) << "two filters, one picture";
 }
 
 TEST_F(CliRender, FB1_ColorBitsLimitTheLevels) {
