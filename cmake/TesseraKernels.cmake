@@ -15,7 +15,13 @@ set(TESSERA_ISA_LANES_avx512 16)
 set(TESSERA_ISA_FLAGS_scalar "")
 set(TESSERA_ISA_FLAGS_sse4 -msse4.2 -maes -mpclmul)
 set(TESSERA_ISA_FLAGS_avx2 -mavx2 -mfma -mf16c -mbmi -mbmi2 -mlzcnt -maes -mpclmul)
-set(TESSERA_ISA_FLAGS_avx512 -march=skylake-avx512)
+set(TESSERA_ISA_FLAGS_avx512 -march=skylake-avx512 -mprefer-vector-width=512)
+# g++ copies structures of vectors in pieces of half a vector; reading them back as a whole then waits
+# for the stores.
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  list(APPEND TESSERA_ISA_FLAGS_avx2 -mmove-max=256 -mstore-max=256)
+  list(APPEND TESSERA_ISA_FLAGS_avx512 -mmove-max=512 -mstore-max=512)
+endif()
 
 function(tessera_kernels target)
   get_target_property(type ${target} TYPE)

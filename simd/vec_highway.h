@@ -53,8 +53,13 @@ struct Mask {
     friend TESSERA_INLINE std::uint32_t mask_bits(Mask a) {
         std::uint8_t bytes[8];
         hn::StoreMaskBits(Tag<float>(), a.m, bytes);
-        constexpr std::uint32_t kLaneBits = (1u << kCount) - 1;
-        return (bytes[0] | static_cast<std::uint32_t>(kCount > 8 ? bytes[1] : 0) << 8) & kLaneBits;
+        if constexpr (kCount == 16) {
+            std::uint16_t bits;
+            __builtin_memcpy(&bits, bytes, sizeof bits);
+            return bits;
+        } else {
+            return bytes[0] & ((1u << kCount) - 1);
+        }
     }
     friend TESSERA_INLINE Mask select(Mask mask, Mask a, Mask b) { return (mask & a) | ((!mask) & b); }
 };
@@ -125,7 +130,13 @@ struct Vector {
         store_aligned(all, a);
         for (int i = 0; i < n; ++i) p[i] = all[i];
     }
-    friend TESSERA_INLINE void store_masked(L* p, Mask m, Vector a) { store(p, select(m, a, Vector::load(p))); }
+    // Only AVX-512's masked stores are fast.
+    friend TESSERA_INLINE void store_masked(L* p, Mask m, Vector a) {
+        if constexpr (kCount == 16)
+            hn::BlendedStore(a.v, hn::RebindMask(D(), m.m), D(), p);
+        else
+            store(p, select(m, a, Vector::load(p)));
+    }
     friend TESSERA_INLINE L lane(Vector a, int i) {
         alignas(64) L all[kCount];
         store_aligned(all, a);
@@ -186,6 +197,21 @@ TESSERA_INLINE Float ceil(Float a) { return Float(hn::Ceil(a.v)); }
 TESSERA_INLINE Float trunc(Float a) { return Float(hn::Trunc(a.v)); }
 // Highway's conversion saturates on both sides.
 TESSERA_INLINE Int to_int(Float a) { return select(a == a, Int(hn::ConvertTo(Tag<std::int32_t>(), a.v)), Int(0)); }
+
+// For |a| < 2^31; others give any integer.
+#if defined(__AVX512F__)
+TESSERA_INLINE Int nearest_int(Float a) { return Int(Raw<std::int32_t>{_mm512_cvtps_epi32(a.v.raw)}); }
+TESSERA_INLINE Int truncate_int(Float a) { return Int(Raw<std::int32_t>{_mm512_cvttps_epi32(a.v.raw)}); }
+#elif defined(__AVX2__)
+TESSERA_INLINE Int nearest_int(Float a) { return Int(Raw<std::int32_t>{_mm256_cvtps_epi32(a.v.raw)}); }
+TESSERA_INLINE Int truncate_int(Float a) { return Int(Raw<std::int32_t>{_mm256_cvttps_epi32(a.v.raw)}); }
+#elif defined(__SSE2__)
+TESSERA_INLINE Int nearest_int(Float a) { return Int(Raw<std::int32_t>{_mm_cvtps_epi32(a.v.raw)}); }
+TESSERA_INLINE Int truncate_int(Float a) { return Int(Raw<std::int32_t>{_mm_cvttps_epi32(a.v.raw)}); }
+#else
+TESSERA_INLINE Int nearest_int(Float a) { return Int(hn::NearestInt(a.v)); }
+TESSERA_INLINE Int truncate_int(Float a) { return Int(hn::ConvertTo(Tag<std::int32_t>(), a.v)); }
+#endif
 
 // --- integers only --------------------------------------------------------------------------
 

@@ -157,6 +157,15 @@ TESSERA_INLINE std::int64_t to_int(double a) {
     if (a < -0x1p63) return INT64_MIN;
     return a == a ? static_cast<std::int64_t>(a) : 0;
 }
+// The nearest integer, ties to even, and the integer towards zero, of numbers below 2^31 in magnitude:
+// one instruction. Others give any integer.
+#if defined(__SSE2__)
+TESSERA_INLINE std::int32_t nearest_int(float a) { return _mm_cvtss_si32(_mm_set_ss(a)); }
+TESSERA_INLINE std::int32_t truncate_int(float a) { return _mm_cvttss_si32(_mm_set_ss(a)); }
+#else
+TESSERA_INLINE std::int32_t nearest_int(float a) { return to_int(round_even(a)); }
+TESSERA_INLINE std::int32_t truncate_int(float a) { return to_int(a); }
+#endif
 // The nearest number, ties to even.
 template <PlainInteger T>
 TESSERA_INLINE FloatOf<T> to_float(T a) {

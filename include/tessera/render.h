@@ -1,6 +1,6 @@
 // Rendering: a scene, a view and options in, planes of pixels and statistics out. render() keeps no
 // global state; any number may run at once. It throws tessera::Error: kUsage for options that make
-// no sense, kLimit and kCancelled while rendering.
+// no sense, kLimit and kCancelled while rendering. To draw one scene many times: renderer.h.
 #pragma once
 
 #include <tessera/export.h>
@@ -33,6 +33,14 @@ struct View {
     Vec3 up{0, 1, 0};
     std::optional<float> yfov;  // radians; default 35 degrees
     bool frame_bounds = false;  // ignore the scene's cameras
+    // For hosts that bring their own matrices and must match another renderer to the pixel: both or
+    // neither, in place of all of the above. `clip_from_world` follows OpenGL (y up, z from -w at the
+    // near plane to w at the far one); of its floats x, y and w come as they are, exactly so for nodes
+    // without a transform, and depth stays Tessera's: z' = (w - z) / 2. `camera_from_world` is the rigid
+    // part, into the space where shading is done: eye at the origin, looking along -Z.
+    std::optional<Mat4> clip_from_world, camera_from_world;
+
+    friend bool operator==(const View&, const View&) = default;
 };
 
 enum class Lighting : std::uint8_t {
@@ -50,6 +58,13 @@ enum class PixelFilter : std::uint8_t {
     kMitchell,  // radius of 2 pixels: Mitchell and Netravali 1988, B = C = 1/3; sharpest, slight halos
 };
 
+// How the tile rasterizer works: its speed and its statistics, never a pixel.
+struct RasterTuning {
+    int tile_side = 0;           // 32, 64 or 128 pixels; 0: chosen by picture and threads
+    bool hierarchical_z = true;  // leave out blocks of pixels that are hidden
+    bool count_samples = true;   // samples_tested and fragments_passed; costs a few percent
+};
+
 struct RenderOptions {
     int width = 1024, height = 768;  // pixels, 1 .. kMaxImageSide
     Engine engine = Engine::kRaster;
@@ -63,12 +78,15 @@ struct RenderOptions {
     std::optional<float> exposure_ev;  // radiance * 2^ev; unset: automatic
     ToneMap tone_map = ToneMap::kNeutral;
     PixelFilter filter = PixelFilter::kBox;
-    std::optional<Vec4> background = Vec4{1, 1, 1, 1};  // display RGB (sRGB-encoded) and alpha; unset: transparent
-    int threads = 0;                                    // 0: what the process may use
+    Encoding encoding = Encoding::kSrgb;                // of the colour plane
+    std::optional<Vec4> background = Vec4{1, 1, 1, 1};  // RGB as the colour plane stores it, alpha; unset: transparent
+    RasterTuning raster;
+    int threads = 0;  // 0: what the process may use
     Isa isa = Isa::kAuto;
 
-    // Planes wanted besides the colour; labels are taken at the pixel centre.
-    bool want_linear = false, want_depth = false, want_primitive = false;
+    // Planes wanted; labels (depth, primitive) are taken at the pixel centre. Nothing is shaded for a
+    // picture without colour and linear planes.
+    bool want_color = true, want_linear = false, want_depth = false, want_primitive = false;
 
     std::uint64_t max_bytes = std::uint64_t{4} << 30;  // memory that rendering may take
     // Called from any thread, but one call at a time: rising from 0 to 1, and true to stop (render()
@@ -83,14 +101,19 @@ struct RenderStats {
     int threads = 1;
     std::uint64_t triangles = 0;  // submitted
     std::uint64_t culled_frustum = 0, culled_backface = 0, culled_degenerate = 0, clipped = 0;
+    // The tile rasterizer's: triangles that reach no sample, those drawn as masks and by blocks; samples
+    // tested for depth; blocks of 8x8 pixels filled, and left out by hierarchical Z.
+    std::uint64_t culled_no_sample = 0, small_triangles = 0, large_triangles = 0;
+    std::uint64_t samples_tested = 0, blocks_drawn = 0, blocks_hidden = 0;
     std::uint64_t pixels_covered = 0;                       // with at least one sample hit; filtered: of alpha > 0
     std::uint64_t fragments_passed = 0;                     // samples that passed the depth test (raster), hits (trace)
-    std::uint64_t color_hash = 0;                           // hash_pixels() of the colour plane
+    std::uint64_t color_hash = 0;                           // hash_pixels() of the colour plane, by render() only
     double exposure = 1;                                    // factor on radiance
     std::vector<std::pair<std::string, double>> phases_ms;  // wall time by phase, in order
     double frame_ms = 0, cpu_ms = 0;
 };
 
+// The planes that were wanted; the others are empty.
 struct RenderResult {
     Image color;      // kRgba8, display-ready, straight alpha
     Image linear;     // kRgba32f, scene radiance before exposure, premultiplied alpha, no background;

@@ -30,6 +30,9 @@ enum class MipFilter : std::uint8_t { kNone, kNearest, kLinear };
 
 // From exposed radiance to display values: cut off, Khronos PBR Neutral, or like ACES.
 enum class ToneMap : std::uint8_t { kNone, kNeutral, kAces };
+// How the 8-bit colour plane stores display values: as sRGB, or as they are (linear), for comparison
+// with renderers that do not encode. Viewers expect sRGB.
+enum class Encoding : std::uint8_t { kSrgb, kLinear };
 
 // No reference. (Declared after the enumerations whose enumerator of this name would shadow it.)
 inline constexpr int kNone = -1;

@@ -6,6 +6,7 @@
 #include <tessera/image.h>
 #include <tessera/load.h>
 #include <tessera/render.h>
+#include <tessera/renderer.h>
 #include <tessera/scene.h>
 #include <tessera/transform.h>
 #include <tessera/types.h>

@@ -16,5 +16,6 @@ struct Command {
 Command add_render_command(CLI::App& application);
 Command add_info_command(CLI::App& application);
 Command add_diff_command(CLI::App& application);
+Command add_bench_command(CLI::App& application);
 
 }  // namespace tessera::cli

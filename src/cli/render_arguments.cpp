@@ -37,16 +37,6 @@ T choose(const std::string& option, const std::string& text, std::initializer_li
     refuse(option, "'" + text + "' is none of " + names);
 }
 
-Engine parse_engine(const std::string& text) {
-    for (const char* planned : {"trace", "hybrid"})
-        if (text == planned)
-            refuse("--engine", text + " does not exist yet; there are raster, reference-raster and reference-trace");
-    return choose<Engine>("--engine", text,
-                          {{"raster", Engine::kRaster},
-                           {"reference-raster", Engine::kReferenceRaster},
-                           {"reference-trace", Engine::kReferenceTrace}});
-}
-
 View parse_view(const RenderArguments& a, bool& z_is_up) {
     View view;
     if (!a.camera.empty() && (!a.eye.empty() || !a.target.empty())) refuse("--camera", "excludes --eye and --target");
@@ -80,6 +70,16 @@ void check_outputs(const RenderArguments& a) {
 
 }  // namespace
 
+Engine parse_engine(const std::string& text) {
+    for (const char* planned : {"trace", "hybrid"})
+        if (text == planned)
+            refuse("--engine", text + " does not exist yet; there are raster, reference-raster and reference-trace");
+    return choose<Engine>("--engine", text,
+                          {{"raster", Engine::kRaster},
+                           {"reference-raster", Engine::kReferenceRaster},
+                           {"reference-trace", Engine::kReferenceTrace}});
+}
+
 void add_render_options(CLI::App& app, RenderArguments& a) {
     const auto option = [&app](const char* group, const char* names, std::string& value, const char* type,
                                const char* help) {
@@ -112,6 +112,8 @@ void add_render_options(CLI::App& app, RenderArguments& a) {
            "none (transparent), #rrggbb, #rrggbbaa, r,g,b[,a] (each 0 .. 1) or a name (default white)");
     option("Picture", "--exposure", a.exposure, "EV", "auto (default), or stops: each doubles the brightness");
     option("Picture", "--tone-map", a.tone_map, "NAME", "neutral (Khronos PBR Neutral, default), aces or none");
+    option("Picture", "--encoding", a.encoding, "NAME",
+           "srgb (default), or linear: 8-bit linear values, to compare with renderers that do not encode");
     option("Picture", "--time", a.time, "S", "seconds into the animation: only 0 is possible yet");
 
     option("Camera", "--camera", a.camera, "NAME|INDEX", "one of the scene's cameras (default: the first)");
@@ -166,6 +168,8 @@ RenderJob parse_render_arguments(const RenderArguments& a) {
     if (a.exposure != "auto") render.exposure_ev = static_cast<float>(parse_number("--exposure", a.exposure, -40, 40));
     render.tone_map = choose<ToneMap>(
         "--tone-map", a.tone_map, {{"neutral", ToneMap::kNeutral}, {"aces", ToneMap::kAces}, {"none", ToneMap::kNone}});
+    render.encoding =
+        choose<Encoding>("--encoding", a.encoding, {{"srgb", Encoding::kSrgb}, {"linear", Encoding::kLinear}});
     if (parse_number("--time", a.time, 0, 1e9) != 0)
         refuse("--time", "animation does not exist yet; only 0 is possible");
 

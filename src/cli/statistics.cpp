@@ -32,10 +32,13 @@ std::string statistics_json(const std::string& scene, const RenderOptions& optio
     json.member("triangles", stats.triangles);
     json.key("culls").begin_object();
     json.member("frustum", stats.culled_frustum).member("backface", stats.culled_backface);
-    json.member("degenerate", stats.culled_degenerate);
+    json.member("degenerate", stats.culled_degenerate).member("no_sample", stats.culled_no_sample);
     json.end_object();
     json.member("clipped", stats.clipped);
-    json.member("pixels_covered", stats.pixels_covered).member("fragments_passed", stats.fragments_passed);
+    json.member("small_triangles", stats.small_triangles).member("large_triangles", stats.large_triangles);
+    json.member("samples_tested", stats.samples_tested).member("fragments_passed", stats.fragments_passed);
+    json.member("blocks_drawn", stats.blocks_drawn).member("blocks_hidden", stats.blocks_hidden);
+    json.member("pixels_covered", stats.pixels_covered);
     json.key("phases_ms").begin_object();
     for (const auto& [phase, milliseconds] : stats.phases_ms) json.member(phase, milliseconds);
     json.end_object();

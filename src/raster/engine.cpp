@@ -2,67 +2,85 @@
 
 #include "raster/tile.h"
 
+#include <tessera/error.h>
+
 #include <atomic>
-#include <memory>
-#include <mutex>
 
 namespace tessera {
-namespace {
 
-// Tiles in work, one per thread at a time.
-class TilePool {
-  public:
-    template <class Make>
-    explicit TilePool(Make&& make) : make_(std::forward<Make>(make)) {}
+struct RasterEngine::State {
+    FrontEnd front;
+    std::mutex mutex;
+    std::vector<std::unique_ptr<Tile>> idle;
 
     std::unique_ptr<Tile> take() {
-        {
-            const std::lock_guard lock(mutex_);
-            if (!free_.empty()) {
-                std::unique_ptr<Tile> tile = std::move(free_.back());
-                free_.pop_back();
-                return tile;
-            }
-        }
-        return make_();
+        const std::lock_guard lock(mutex);
+        if (idle.empty()) return std::make_unique<Tile>();
+        std::unique_ptr<Tile> tile = std::move(idle.back());
+        idle.pop_back();
+        return tile;
     }
     void give(std::unique_ptr<Tile> tile) {
-        const std::lock_guard lock(mutex_);
-        free_.push_back(std::move(tile));
+        const std::lock_guard lock(mutex);
+        idle.push_back(std::move(tile));
     }
-    const std::vector<std::unique_ptr<Tile>>& all() const { return free_; }
-
-  private:
-    std::function<std::unique_ptr<Tile>()> make_;
-    std::mutex mutex_;
-    std::vector<std::unique_ptr<Tile>> free_;
 };
+
+namespace {
+
+// Larger tiles bin less and shade a little better; more of them keep more threads busy. In large
+// pictures edges over 128 pixels would not fit 32 bits.
+int choose_tile_side(const RasterSettings& settings, const ProjectionView& picture, int threads) {
+    const bool large = picture.width > 8192 || picture.height > 8192;
+    if (settings.tile_side != 0) {
+        if (settings.tile_side == 128 && large) return 64;
+        return settings.tile_side;
+    }
+    return threads <= 4 && !large && picture.width * picture.height > 640 * 480 ? 128 : 64;
+}
+
+void add(TileCounters& sum, const TileCounters& c) {
+    sum.samples_covered += c.samples_covered;
+    sum.fragments_passed += c.fragments_passed;
+    sum.blocks_drawn += c.blocks_drawn;
+    sum.blocks_hidden += c.blocks_hidden;
+}
 
 }  // namespace
 
-RasterCounters draw_raster(const Frame& frame, const ShadingContext& shading, const RasterSettings& settings,
-                           const RasterTargets& targets, Arena& arena) {
-    const TileGrid grid(static_cast<int>(frame.projection.width), static_cast<int>(frame.projection.height));
-    std::vector<SamplePosition> positions = settings.samples;
-    if (targets.distance || targets.triangle) positions.push_back({128, 128});
-    const FrontEndResult front = run_front_end(frame, shading, raster_kernels(settings.isa), grid, positions, arena,
-                                               [&] { settings.checkpoint(0.0); });
+RasterEngine::RasterEngine() : state_(std::make_unique<State>()) {}
+RasterEngine::~RasterEngine() = default;
+RasterEngine::RasterEngine(RasterEngine&&) noexcept = default;
+RasterEngine& RasterEngine::operator=(RasterEngine&&) noexcept = default;
 
-    TilePool pool([&] { return std::make_unique<Tile>(frame, shading, settings, targets, front); });
+RasterCounters RasterEngine::draw(const Frame& frame, const ShadingContext& shading, const RasterSettings& settings,
+                                  const RasterTargets& targets, Arena& arena) {
+    const TileGrid grid(static_cast<int>(frame.projection.width), static_cast<int>(frame.projection.height),
+                        choose_tile_side(settings, frame.projection, arena.threads()));
+    std::vector<SamplePosition> positions;
+    if (targets.colors()) positions = settings.samples;
+    const bool centre_is_sample = positions.size() == 1 && positions[0].x == 128 && positions[0].y == 128;
+    if ((targets.labels() && !centre_is_sample) || positions.empty()) positions.push_back({128, 128});
+    const std::function<void()> pause = [&] { settings.checkpoint(0.0); };
+    const FrontEndInput input{frame, shading, raster_kernels(settings.isa), grid, positions, pause};
+    state_->front.run(input, arena);
+
+    const TileTask task(frame, shading, settings, targets, grid, state_->front);
+    for (const std::unique_ptr<Tile>& tile : state_->idle) tile->reset_counters();
     std::atomic<int> done{0};
     arena.for_each(static_cast<std::size_t>(grid.count()), [&](std::size_t index) {
         settings.checkpoint(static_cast<double>(done.load()) / grid.count());
-        std::unique_ptr<Tile> tile = pool.take();
-        tile->draw(grid, static_cast<int>(index));
-        pool.give(std::move(tile));
+        std::unique_ptr<Tile> tile = state_->take();
+        tile->draw(task, static_cast<int>(index));
+        state_->give(std::move(tile));
         ++done;
     });
     settings.checkpoint(1.0);
     RasterCounters counters;
-    counters.front = front.counters;
-    counters.triangles = front.triangles;
-    for (const std::unique_ptr<Tile>& tile : pool.all()) {
-        counters.fragments_passed += tile->fragments_passed;
+    counters.front = state_->front.counters;
+    counters.triangles = state_->front.triangles;
+    for (const std::unique_ptr<Tile>& tile : state_->idle) {
+        add(counters.tiles, tile->counters);
         counters.pixels_covered += tile->pixels_covered;
     }
     return counters;

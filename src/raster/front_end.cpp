@@ -1,116 +1,153 @@
 #include "raster/front_end.h"
 
 #include <algorithm>
-#include <mutex>
+#include <bit>
 
 namespace tessera {
 namespace {
 
-// Part of one instance's triangles.
-struct ChunkRange {
-    std::uint32_t instance, first, count;
+// Everything a set-up kernel calls back for.
+struct ChunkBuilder {
+    SetupJob job{};
+    BinnedChunk& chunk;
+    const TileGrid& grid;
+    const ProjectionView& projection;
+
+    ChunkBuilder(BinnedChunk& c, const TileGrid& g, const ProjectionView& p) : chunk(c), grid(g), projection(p) {
+        job.owner = this;
+        job.reserve = [](SetupJob& j) { of(j).reserve(4 * kMaxLanes); };
+        job.bin_large = [](SetupJob& j) { of(j).bin_last_large(); };
+        job.set_up_slowly = [](SetupJob& j, std::uint32_t triangle) { of(j).set_up_slowly(triangle); };
+        point_at_arrays();
+    }
+    static ChunkBuilder& of(SetupJob& job) { return *static_cast<ChunkBuilder*>(job.owner); }
+
+    void point_at_arrays() {
+        ChunkArrays& a = job.arrays;
+        a.small = chunk.small.data();
+        a.large = chunk.large.data();
+        a.runs = chunk.unsorted.data();
+        a.run_tiles = chunk.tiles.data();
+        a.small_capacity = static_cast<std::uint32_t>(chunk.small.capacity());
+        a.large_capacity = static_cast<std::uint32_t>(chunk.large.capacity());
+        a.run_capacity = static_cast<std::uint32_t>(std::min(chunk.unsorted.capacity(), chunk.tiles.capacity()));
+    }
+
+    // Room for a batch of triangles of each kind, and `runs` more runs.
+    void reserve(std::uint32_t runs) {
+        ChunkArrays& a = job.arrays;
+        if (a.room() >= kMaxLanes && a.run_count + runs <= a.run_capacity) return;
+        chunk.small.reserve(a.small_count + kMaxLanes, a.small_count);
+        chunk.large.reserve(a.large_count + kMaxLanes, a.large_count);
+        chunk.unsorted.reserve(a.run_count + runs, a.run_count);
+        chunk.tiles.reserve(a.run_count + runs, a.run_count);
+        point_at_arrays();
+    }
+
+    void bin_last_large();
+    void set_up_slowly(std::uint32_t triangle);
+    void sort_runs();
 };
 
-std::vector<ChunkRange> make_chunks(const Frame& frame, int threads, std::uint64_t& triangles,
-                                    FrontCounters& counters) {
-    const std::uint32_t size =
-        std::clamp(frame.triangle_count / (8u * static_cast<std::uint32_t>(threads)), 2048u, 16384u);
-    std::vector<ChunkRange> chunks;
-    for (std::uint32_t i = 0; i < frame.instances.size(); ++i) {
-        const std::uint32_t count = frame.instances[i].mesh.triangle_count;
-        triangles += count;
-        if (outside_view(frame.instances[i], frame.prepared[i]->bounds)) {
-            counters.frustum += count;
-            continue;
+struct TileRange {
+    int x_begin, y_begin, x_end, y_end;  // end is one past
+
+    int count() const { return std::max(x_end - x_begin, 0) * std::max(y_end - y_begin, 0); }
+};
+
+TileRange tiles_of(const LargeTriangle& t, const TileGrid& grid) {
+    const auto tile = [&](std::int32_t v) { return v >> (8 + grid.shift); };
+    const auto [low_x, high_x] = std::minmax({t.v[0].x, t.v[1].x, t.v[2].x});
+    const auto [low_y, high_y] = std::minmax({t.v[0].y, t.v[1].y, t.v[2].y});
+    return {std::max(tile(low_x), 0), std::max(tile(low_y), 0), std::min(tile(high_x) + 1, grid.columns),
+            std::min(tile(high_y) + 1, grid.rows)};
+}
+
+// The edges of a triangle at the corners of tiles where they are largest.
+struct CornerEdges {
+    std::int64_t start[3], a[3], b[3];  // of tile (0, 0); per tile
+
+    CornerEdges(const LargeTriangle& t, const TileGrid& grid) {
+        const std::int64_t side = std::int64_t{256} * grid.side;
+        for (int k = 0; k < 3; ++k) {
+            const SnappedVertex from = t.v[k], to = t.v[(k + 1) % 3];
+            const std::int64_t dx = static_cast<std::int64_t>(to.x) - from.x,
+                               dy = static_cast<std::int64_t>(to.y) - from.y;
+            start[k] = dx * ((dx > 0 ? side : 0) - from.y) - dy * ((dy < 0 ? side : 0) - from.x);
+            a[k] = -dy * side;
+            b[k] = dx * side;
         }
-        for (std::uint32_t first = 0; first < count; first += size)
-            chunks.push_back({i, first, std::min(size, count - first)});
     }
-    return chunks;
+    // Whether a tile lies wholly outside one edge.
+    bool miss(int x, int y) const {
+        for (int k = 0; k < 3; ++k)
+            if (start[k] + a[k] * x + b[k] * y < 0) return true;
+        return false;
+    }
+};
+
+void ChunkBuilder::bin_last_large() {
+    const std::uint32_t index = job.arrays.large_count - 1;
+    const TileRange range = tiles_of(job.arrays.large[index], grid);
+    reserve(static_cast<std::uint32_t>(range.count()) + 4 * kMaxLanes);
+    ChunkArrays& arrays = job.arrays;
+    const bool many = range.x_end - range.x_begin > 1 && range.y_end - range.y_begin > 1;
+    const CornerEdges edges(arrays.large[index], grid);
+    for (int y = range.y_begin; y < range.y_end; ++y)
+        for (int x = range.x_begin; x < range.x_end; ++x) {
+            if (many && edges.miss(x, y)) continue;
+            arrays.run_tiles[arrays.run_count] = static_cast<std::uint32_t>(y * grid.columns + x);
+            arrays.runs[arrays.run_count++] = {index, 1 | BinRun::kLarge};
+        }
 }
 
 // The scalar path: clipped triangles, and those too large for the kernel's 32-bit areas.
-void set_up_slowly(const SetupJob& job, std::uint32_t triangle, std::vector<TriangleRecord>& out,
-                   FrontCounters& counters) {
+void ChunkBuilder::set_up_slowly(std::uint32_t triangle) {
     TriangleSetup t;
-    setup_triangle(*job.instance, triangle, job.projection, t);
+    setup_triangle(*job.instance, triangle, projection, t);
     switch (t.kind) {
         case TriangleSetup::Kind::kOutside:
-            ++counters.frustum;
+            ++job.counters.frustum;
             return;
         case TriangleSetup::Kind::kDegenerate:
-            ++counters.degenerate;
+            ++job.counters.degenerate;
             return;
         case TriangleSetup::Kind::kClipped:
-            ++counters.clipped;
+            ++job.counters.clipped;
             break;
         case TriangleSetup::Kind::kPlain:
             break;
     }
     if (!t.front(*job.instance) && !job.double_sided) {
-        ++counters.backface;
+        ++job.counters.backface;
         return;
     }
     for (int i = 1; i + 1 < t.vertex_count; ++i) {
         const std::int64_t area = twice_area(t.polygon[0], t.polygon[i], t.polygon[i + 1]);
         if (area == 0 || (area < 0) != (t.orientation > 0)) continue;
-        TriangleRecord r{
-            {t.polygon[0], t.polygon[i], t.polygon[i + 1]}, t.depth, triangle, job.instance_index, t.orientation};
-        if (area < 0) std::swap(r.v[1], r.v[2]);
-        out.push_back(r);
+        reserve(4 * kMaxLanes);
+        LargeTriangle& piece = job.arrays.large[job.arrays.large_count++];
+        piece = {{t.polygon[0], t.polygon[i], t.polygon[i + 1]}, t.depth, triangle, job.instance_index};
+        if (area < 0) std::swap(piece.v[1], piece.v[2]);
+        ++job.counters.large;
+        bin_last_large();
     }
 }
 
-struct TileRange {
-    int x_begin, y_begin, x_end, y_end;  // end is one past
-};
-
-TileRange tiles_of(const TriangleRecord& r, const TileGrid& grid) {
-    const auto tile = [](std::int32_t v) { return (v >> 8) / kTileSide; };
-    const auto [low_x, high_x] = std::minmax({r.v[0].x, r.v[1].x, r.v[2].x});
-    const auto [low_y, high_y] = std::minmax({r.v[0].y, r.v[1].y, r.v[2].y});
-    if (high_x < 0 || high_y < 0) return {0, 0, 0, 0};
-    return {tile(std::max(low_x, 0)), tile(std::max(low_y, 0)), std::min(tile(high_x) + 1, grid.columns),
-            std::min(tile(high_y) + 1, grid.rows)};
-}
-
-// Whether a tile lies wholly outside one edge of the triangle.
-bool misses_tile(const TriangleRecord& r, int tile_x, int tile_y) {
-    const std::int64_t side = 256 * kTileSide, x = tile_x * side, y = tile_y * side;
-    for (int k = 0; k < 3; ++k) {
-        const SnappedVertex from = r.v[k], to = r.v[(k + 1) % 3];
-        const std::int64_t dx = static_cast<std::int64_t>(to.x) - from.x, dy = static_cast<std::int64_t>(to.y) - from.y;
-        // The corner where E = dx (y - from.y) - dy (x - from.x) is largest.
-        const std::int64_t cx = dy < 0 ? x + side : x, cy = dx > 0 ? y + side : y;
-        if (dx * (cy - from.y) - dy * (cx - from.x) < 0) return true;
-    }
-    return false;
-}
-
-// Counting sort of the records by tile.
-void bin(BinnedChunk& chunk, const TileGrid& grid) {
-    struct Entry {
-        std::uint32_t tile, record;
-    };
-    std::vector<Entry> unsorted;
-    unsorted.reserve(chunk.records.size() + chunk.records.size() / 4);
-    chunk.begin.assign(static_cast<std::size_t>(grid.count()) + 1, 0);
-    for (std::uint32_t i = 0; i < chunk.records.size(); ++i) {
-        const TriangleRecord& r = chunk.records[i];
-        const TileRange range = tiles_of(r, grid);
-        const bool large = (range.x_end - range.x_begin) > 1 && (range.y_end - range.y_begin) > 1;
-        for (int y = range.y_begin; y < range.y_end; ++y)
-            for (int x = range.x_begin; x < range.x_end; ++x) {
-                if (large && misses_tile(r, x, y)) continue;
-                const auto tile = static_cast<std::uint32_t>(y * grid.columns + x);
-                unsorted.push_back({tile, i});
-                ++chunk.begin[tile + 1];
-            }
-    }
-    for (std::size_t t = 1; t < chunk.begin.size(); ++t) chunk.begin[t] += chunk.begin[t - 1];
-    chunk.entries.resize(unsorted.size());
-    std::vector<std::uint32_t> next(chunk.begin.begin(), chunk.begin.end() - 1);
-    for (const Entry& e : unsorted) chunk.entries[next[e.tile]++] = e.record;
+// Counting sort of the runs by tile; those of a tile keep their order.
+void ChunkBuilder::sort_runs() {
+    const ChunkArrays& a = job.arrays;
+    const auto tiles = static_cast<std::size_t>(grid.count());
+    std::uint32_t* begin = chunk.begin.reserve(tiles + 2);
+    std::fill_n(begin, tiles + 2, 0u);
+    for (std::uint32_t i = 0; i < a.run_count; ++i) ++begin[a.run_tiles[i] + 2];
+    for (std::size_t t = 2; t < tiles + 2; ++t) begin[t] += begin[t - 1];
+    BinRun* sorted = chunk.runs.reserve(a.run_count);
+    // begin[t + 1] walks from the start of tile t to its end, which is the start of the next.
+    for (std::uint32_t i = 0; i < a.run_count; ++i) sorted[begin[a.run_tiles[i] + 1]++] = a.runs[i];
+    chunk.small_count = a.small_count;
+    chunk.large_count = a.large_count;
+    chunk.run_count = a.run_count;
 }
 
 void add(FrontCounters& sum, const FrontCounters& c) {
@@ -118,45 +155,143 @@ void add(FrontCounters& sum, const FrontCounters& c) {
     sum.backface += c.backface;
     sum.degenerate += c.degenerate;
     sum.clipped += c.clipped;
+    sum.no_sample += c.no_sample;
+    sum.small += c.small;
+    sum.large += c.large;
 }
 
 }  // namespace
 
-FrontEndResult run_front_end(const Frame& frame, const ShadingContext& shading, const RasterKernels& kernels,
-                             const TileGrid& grid, const std::vector<SamplePosition>& samples, Arena& arena,
-                             const std::function<void()>& checkpoint) {
-    FrontEndResult result;
-    const std::vector<ChunkRange> ranges = make_chunks(frame, arena.threads(), result.triangles, result.counters);
-    result.chunks.resize(ranges.size());
-    std::mutex counters_mutex;
-    arena.for_each(ranges.size(), [&](std::size_t c) {
-        checkpoint();
-        const ChunkRange& range = ranges[c];
-        BinnedChunk& chunk = result.chunks[c];
-        std::vector<TriangleRecord> fast(range.count), clipped;
-        std::vector<std::uint32_t> slow(range.count);
-        SetupJob job{};
-        job.instance = &frame.instances[range.instance];
-        job.projection = frame.projection;
-        job.instance_index = range.instance;
-        job.first = range.first;
-        job.count = range.count;
-        job.double_sided = shading.materials[job.instance->material].double_sided;
-        job.one_sample = samples.size() == 1;
-        job.sample = samples[0];
-        job.records = fast.data();
-        job.slow = slow.data();
-        kernels.setup(job);
-        for (std::uint32_t i = 0; i < job.slow_count; ++i) set_up_slowly(job, slow[i], clipped, job.counters);
-        fast.resize(job.record_count);
-        chunk.records.resize(fast.size() + clipped.size());
-        std::merge(fast.begin(), fast.end(), clipped.begin(), clipped.end(), chunk.records.begin(),
-                   [](const TriangleRecord& a, const TriangleRecord& b) { return a.triangle < b.triangle; });
-        if (!chunk.empty()) bin(chunk, grid);
-        const std::lock_guard lock(counters_mutex);
-        add(result.counters, job.counters);
+TileGrid::TileGrid(int width, int height, int tile_side)
+    : side(tile_side),
+      shift(std::countr_zero(static_cast<unsigned>(tile_side))),
+      columns((width + tile_side - 1) / tile_side),
+      rows((height + tile_side - 1) / tile_side) {}
+
+void FrontEnd::make_chunks(const FrontEndInput& input, int threads) {
+    const Frame& frame = input.frame;
+    const std::uint32_t size =
+        std::clamp(frame.triangle_count / (8u * static_cast<std::uint32_t>(threads)), 2048u, 16384u);
+    counters = {};
+    triangles = 0;
+    ranges_.clear();
+    chunk_begin_.assign(1, 0);
+    std::uint32_t filled = 0;
+    for (std::uint32_t i = 0; i < frame.instances.size(); ++i) {
+        const std::uint32_t count = frame.instances[i].mesh.triangle_count;
+        triangles += count;
+        if (outside_view(frame.instances[i], frame.prepared[i]->bounds)) {
+            counters.frustum += count;
+            continue;
+        }
+        for (std::uint32_t first = 0; first < count;) {
+            const std::uint32_t part = std::min(size - filled, count - first);
+            ranges_.push_back({i, first, part});
+            first += part;
+            filled += part;
+            if (filled < size) continue;
+            chunk_begin_.push_back(ranges_.size());
+            filled = 0;
+        }
+    }
+    if (filled > 0) chunk_begin_.push_back(ranges_.size());
+    if (chunks_.size() < chunk_begin_.size() - 1) chunks_.resize(chunk_begin_.size() - 1);
+}
+
+void FrontEnd::set_up(const FrontEndInput& input, const Range& range, Scratch& scratch, BinnedChunk& chunk,
+                      FrontCounters& sum) const {
+    const InstanceView& instance = input.frame.instances[range.instance];
+    const ProjectionView& picture = input.frame.projection;
+    const std::uint32_t* indices = instance.mesh.triangles + 3 * std::size_t{range.first};
+    const std::uint32_t corners = 3 * range.count;
+    std::uint32_t low = 0, high = 0;
+    input.kernels.index_range(indices, corners, low, high);
+
+    // Vertices in a row are transformed once each; scattered ones once per corner.
+    const bool in_a_row = high - low < corners;
+    VertexJob vertices{};
+    vertices.instance = &instance;
+    vertices.width = picture.width;
+    vertices.height = picture.height;
+    vertices.indices = in_a_row ? nullptr : indices;
+    vertices.first = low;
+    vertices.count = in_a_row ? high - low + 1 : corners;
+    vertices.out = scratch.vertices.reserve(vertices.count + kMaxLanes);
+    input.kernels.transform(vertices);
+
+    ChunkBuilder builder(chunk, input.grid, picture);
+    const MaterialView& material = input.shading.materials[instance.material];
+    SetupJob& job = builder.job;
+    job.arrays.small_count = chunk.small_count;
+    job.arrays.large_count = chunk.large_count;
+    job.arrays.run_count = chunk.run_count;
+    job.instance = &instance;
+    job.width = picture.width;
+    job.height = picture.height;
+    job.instance_index = range.instance;
+    job.first = range.first;
+    job.count = range.count;
+    job.double_sided = material.double_sided;
+    job.one_sample = input.samples.size() == 1;
+    job.masks = job.one_sample && material.alpha_mode == AlphaMode::kOpaque;
+    job.sample = input.samples[0];
+    job.tile_shift = input.grid.shift;
+    job.tile_columns = input.grid.columns;
+    job.vertices = scratch.vertices.data();
+    job.indices = in_a_row ? indices : scratch.count_up(corners);
+    job.vertex_base = in_a_row ? low : 0;
+    input.kernels.setup(job);
+    chunk.small_count = job.arrays.small_count;
+    chunk.large_count = job.arrays.large_count;
+    chunk.run_count = job.arrays.run_count;
+    add(sum, job.counters);
+}
+
+void FrontEnd::build_chunk(const FrontEndInput& input, std::size_t index) {
+    std::unique_ptr<Scratch> scratch;
+    {
+        const std::lock_guard lock(mutex_);
+        if (!scratch_.empty()) {
+            scratch = std::move(scratch_.back());
+            scratch_.pop_back();
+        }
+    }
+    if (!scratch) scratch = std::make_unique<Scratch>();
+    BinnedChunk& chunk = chunks_[index];
+    chunk.small_count = chunk.large_count = chunk.run_count = 0;
+    FrontCounters sum;
+    for (std::size_t r = chunk_begin_[index]; r < chunk_begin_[index + 1]; ++r)
+        set_up(input, ranges_[r], *scratch, chunk, sum);
+    ChunkBuilder builder(chunk, input.grid, input.frame.projection);
+    builder.job.arrays.small_count = chunk.small_count;
+    builder.job.arrays.large_count = chunk.large_count;
+    builder.job.arrays.run_count = chunk.run_count;
+    builder.sort_runs();
+    const std::lock_guard lock(mutex_);
+    scratch_.push_back(std::move(scratch));
+    add(counters, sum);
+}
+
+void FrontEnd::run(const FrontEndInput& input, Arena& arena) {
+    make_chunks(input, arena.threads());
+    arena.for_each(chunk_begin_.size() - 1, [&](std::size_t chunk) {
+        input.checkpoint();
+        build_chunk(input, chunk);
     });
-    return result;
+}
+
+std::uint32_t FrontEnd::bins_of(int tile, std::vector<TileBin>& bins) const {
+    bins.clear();
+    std::uint32_t count = 0;
+    const auto t = static_cast<std::size_t>(tile);
+    for (std::size_t c = 0; c + 1 < chunk_begin_.size(); ++c) {
+        const BinnedChunk& chunk = chunks_[c];
+        const std::uint32_t first = chunk.begin[t], end = chunk.begin[t + 1];
+        if (first == end) continue;
+        bins.push_back({chunk.small.data(), chunk.large.data(), chunk.runs.data() + first, end - first});
+        for (std::uint32_t r = first; r < end; ++r) count += chunk.runs[r].size();
+    }
+    return count;
 }
 
 }  // namespace tessera

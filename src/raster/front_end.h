@@ -1,43 +1,85 @@
-// The front end: chunks of triangles are set up in parallel and binned to tiles, each chunk into a
-// store of its own, without locks. Tiles read the chunks in their order, which is that of submission.
+// The front end: chunks of triangles are transformed, set up and binned to tiles in parallel, each chunk
+// into a store of its own, without locks. Tiles read the chunks in their order, which is that of
+// submission.
 #pragma once
 
 #include "core/parallel.h"
 #include "geometry/frame.h"
+#include "raster/buffer.h"
 #include "raster/kernels.h"
 
 #include <functional>
+#include <mutex>
 #include <vector>
 
 namespace tessera {
 
-// A tile grid over the picture.
+// Tiles over the picture, row after row.
 struct TileGrid {
-    int columns, rows;
-    TileGrid(int width, int height)
-        : columns((width + kTileSide - 1) / kTileSide), rows((height + kTileSide - 1) / kTileSide) {}
+    int side, shift, columns, rows;  // side: 32, 64 or 128 pixels, 1 << shift
+
+    TileGrid(int width, int height, int tile_side);
     int count() const { return columns * rows; }
 };
 
-// What one chunk gave: records in the order of submission, and for every tile the numbers of those
-// that may touch it, in the same order.
+// What one chunk gave. The runs of tile t are runs[begin[t]] to runs[begin[t + 1]].
 struct BinnedChunk {
-    std::vector<TriangleRecord> records;
-    std::vector<std::uint32_t> entries;  // tile after tile
-    std::vector<std::uint32_t> begin;    // of each tile in entries; one more than tiles
-
-    bool empty() const { return records.empty(); }
+    Buffer<SmallTriangle> small;
+    Buffer<LargeTriangle> large;
+    Buffer<BinRun> runs;
+    Buffer<std::uint32_t> begin;
+    std::uint32_t small_count = 0, large_count = 0, run_count = 0;
+    // While it is made: runs in the order of submission, and their tiles.
+    Buffer<BinRun> unsorted;
+    Buffer<std::uint32_t> tiles;
 };
 
-struct FrontEndResult {
-    std::vector<BinnedChunk> chunks;
+struct FrontEndInput {
+    const Frame& frame;
+    const ShadingContext& shading;
+    const RasterKernels& kernels;
+    const TileGrid& grid;
+    const std::vector<SamplePosition>& samples;
+    const std::function<void()>& checkpoint;  // called by the tasks; may throw
+};
+
+// Keeps its memory from frame to frame. One frame at a time.
+class FrontEnd {
+  public:
+    void run(const FrontEndInput& input, Arena& arena);
+
+    // What the chunks have for a tile, in the order of submission; returns how many triangles.
+    std::uint32_t bins_of(int tile, std::vector<TileBin>& bins) const;
+
     FrontCounters counters;
     std::uint64_t triangles = 0;
-};
 
-// `samples` are the sample positions per pixel. `checkpoint` is called by the tasks and may throw.
-FrontEndResult run_front_end(const Frame& frame, const ShadingContext& shading, const RasterKernels& kernels,
-                             const TileGrid& grid, const std::vector<SamplePosition>& samples, Arena& arena,
-                             const std::function<void()>& checkpoint);
+  private:
+    // Part of one instance's triangles.
+    struct Range {
+        std::uint32_t instance, first, count;
+    };
+    struct Scratch {
+        Buffer<TransformedVertex> vertices;
+        std::vector<std::uint32_t> numbers;
+
+        // 0, 1, 2, ...: at least `count`.
+        const std::uint32_t* count_up(std::size_t count) {
+            for (std::size_t i = numbers.size(); i < count; ++i) numbers.push_back(static_cast<std::uint32_t>(i));
+            return numbers.data();
+        }
+    };
+
+    void make_chunks(const FrontEndInput& input, int threads);
+    void build_chunk(const FrontEndInput& input, std::size_t chunk);
+    void set_up(const FrontEndInput& input, const Range& range, Scratch& scratch, BinnedChunk& chunk,
+                FrontCounters& sum) const;
+
+    std::vector<Range> ranges_;
+    std::vector<std::size_t> chunk_begin_;  // first range of every chunk, and the end
+    std::vector<BinnedChunk> chunks_;
+    std::mutex mutex_;
+    std::vector<std::unique_ptr<Scratch>> scratch_;
+};
 
 }  // namespace tessera

@@ -1,12 +1,15 @@
-// The rasterizer's kernels, compiled once per instruction set.
-#include "raster/setup_kernel.h"
-#include "raster/shade_kernel.h"
-#include "raster/visibility_kernel.h"
+// The rasterizer's kernels but for shading, compiled once per instruction set, and the table of all.
+#include "raster/film_kernel.h"
 
 namespace tessera::TESSERA_ISA_NAMESPACE {
 
+// shade.simd.cpp
+void shade_tile(const ShadeJob& job);
+void shade_points(const ShadeJob& job);
+
 const RasterKernels& raster_kernels() {
-    static constexpr RasterKernels kKernels{&setup, &visibility, &shade_points, &develop_row};
+    static constexpr RasterKernels kKernels{&index_range,   &transform,  &setup,        &visibility,   &find_visible,
+                                            &make_surfaces, &shade_tile, &shade_points, &develop_tile, &label_tile};
     return kKernels;
 }
 

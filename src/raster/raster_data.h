@@ -1,95 +1,247 @@
 // What the stages of the rasterizer hand to each other and to their kernels: plain data. Picture
-// coordinates in 24.8 fixed point (1/256 pixel, y down), depth reversed.
+// coordinates in 24.8 fixed point (1/256 pixel, y down), depth reversed. docs/rasterizer.md explains
+// the formats.
 #pragma once
 
 #include "shading/film.h"
 #include "shading/shade.h"
+#include "shading/surface_planes.h"
 #include "shading/triangle_setup.h"
 
 #include <cstdint>
 
 namespace tessera {
 
-// Pixels on a side of a tile: its depth and ordinals (32 KiB) stay in the first two caches.
-inline constexpr int kTileSide = 64;
-inline constexpr int kTilePixels = kTileSide * kTileSide;
+// A tile's pixels lie as blocks of 8x8, row after row of blocks, 64 numbers of a block together.
+inline constexpr int kBlockSide = 8;
+inline constexpr int kBlockPixels = kBlockSide * kBlockSide;
+inline constexpr int kMaxTileSide = 128;
+inline constexpr int kMaxTilePixels = kMaxTileSide * kMaxTileSide;
 // The widest vectors; arrays that kernels read are padded to a multiple of it.
 inline constexpr int kMaxLanes = 16;
 
-// A triangle, or a piece of a clipped one, ready to fill.
-struct TriangleRecord {
-    SnappedVertex v[3];  // clockwise on the screen
+// --- the front end ----------------------------------------------------------------------------
+
+// A vertex in the picture: position (x, y) in 1/256 pixel before snapping, z / w, all zero where its
+// triangles need the scalar path anyway, and the bits of its out-codes. 16 bytes: one load.
+struct TransformedVertex {
+    float numbers[4];
+};
+// Besides the out-codes: coordinates beyond any use.
+inline constexpr std::uint32_t kUnusable = 128;
+
+// Transforms `count` vertices: consecutive ones from `first`, or where `indices` is set those.
+struct VertexJob {
+    const InstanceView* instance;
+    float width, height;
+    const std::uint32_t* indices;
+    std::uint32_t first, count;
+    TransformedVertex* out;  // padded to kMaxLanes
+};
+
+// A triangle whose samples fit 8x8 pixels: all of its coverage as a mask (bit 8 * row + column, from
+// pixel (x, y)), not clipped to the picture's right and bottom. One sample per pixel.
+struct SmallTriangle {
     DepthPlane<float> depth;
+    std::uint32_t position;  // x | y << 16
+    std::uint32_t rows[2];   // rows 0 .. 3 and 4 .. 7
     std::uint32_t triangle;  // within its instance
     std::uint32_t instance;
-    float orientation;  // of the whole triangle: +1 counter-clockwise as a viewer sees it
+};
+static_assert(sizeof(SmallTriangle) == 48);
+
+// Any other triangle, or a piece of a clipped one.
+struct LargeTriangle {
+    SnappedVertex v[3];  // clockwise on the screen
+    DepthPlane<float> depth;
+    std::uint32_t triangle;
+    std::uint32_t instance;
+};
+
+// Consecutive triangles of a chunk that one tile draws: small ones, or large ones.
+struct BinRun {
+    static constexpr std::uint32_t kLarge = 0x80000000u;
+    std::uint32_t first, count;  // count | kLarge
+
+    TESSERA_INLINE std::uint32_t size() const { return count & ~kLarge; }
+    TESSERA_INLINE bool large() const { return (count & kLarge) != 0; }
 };
 
 struct FrontCounters {
-    std::uint64_t frustum = 0, backface = 0, degenerate = 0, clipped = 0;
+    std::uint64_t frustum = 0, backface = 0, degenerate = 0, clipped = 0, no_sample = 0, small = 0, large = 0;
 };
 
-// Set-up of consecutive triangles of one instance. `records` and `slow` hold `count` entries.
+// Triangles and runs of a chunk as they grow, in the order of submission. The arrays belong to the
+// front end, which makes them larger when the kernel asks.
+struct ChunkArrays {
+    SmallTriangle* small;
+    LargeTriangle* large;
+    BinRun* runs;
+    std::uint32_t* run_tiles;  // the tile of every run
+    std::uint32_t small_count, large_count, run_count;
+    std::uint32_t small_capacity, large_capacity, run_capacity;
+
+    // How many more triangles fit of either kind, small ones with the four runs that they may need.
+    TESSERA_INLINE std::uint32_t room() const {
+        const std::uint32_t small_room = small_capacity - small_count, large_room = large_capacity - large_count;
+        const std::uint32_t run_room = (run_capacity - run_count) / 4;
+        const std::uint32_t least = small_room < large_room ? small_room : large_room;
+        return least < run_room ? least : run_room;
+    }
+};
+
+// Set-up and binning of consecutive triangles of one instance.
 struct SetupJob {
     const InstanceView* instance;
-    ProjectionView projection;
+    float width, height;
     std::uint32_t instance_index, first, count;
     bool double_sided;
-    // With one sample per pixel, its position: triangles that reach no sample are dropped.
-    bool one_sample;
+    bool one_sample;  // then `sample` is its position, and triangles that reach none are dropped
+    bool masks;       // small triangles may become masks
     SamplePosition sample;
-    TriangleRecord* records;
-    std::uint32_t record_count;
-    // Triangles that need the scalar path: clipped, or too large for 32-bit areas.
-    std::uint32_t* slow;
-    std::uint32_t slow_count;
+    int tile_shift, tile_columns;
+    const TransformedVertex* vertices;
+    // Three per triangle, into `vertices` after taking away vertex_base.
+    const std::uint32_t* indices;
+    std::uint32_t vertex_base;
+    ChunkArrays arrays;
     FrontCounters counters;
-};
-
-// Coverage and depth of a tile at one sample position per pixel. Ordinals count the tile's records from
-// 1; 0 is nothing.
-struct VisibilityJob {
-    int x0, y0, width, height;  // first pixel, and how many of the tile lie in the picture
-    SamplePosition offset;
-    const TriangleRecord* const* records;
-    std::uint32_t record_count;
-    const InstanceView* instances;
-    const ShadingContext* shading;
-    ProjectionView projection;
-    float* depth;            // kTilePixels, row by row
-    std::uint32_t* ordinal;  // kTilePixels
-    std::uint64_t fragments_passed;
-    // Receives one transparent fragment.
-    void (*add_fragment)(void* owner, std::uint32_t pixel, std::uint32_t ordinal, float depth);
+    // Makes room for kMaxLanes more triangles of each kind and their runs.
+    void (*reserve)(SetupJob& job);
+    // Bins the last of arrays.large.
+    void (*bin_large)(SetupJob& job);
+    // Takes a triangle (within the instance) that is clipped, or too large for 32-bit areas.
+    void (*set_up_slowly)(SetupJob& job, std::uint32_t triangle);
     void* owner;
 };
 
-// Surface points of one instance to shade, one per entry, padded to kMaxLanes.
-struct ShadeJob {
-    const InstanceView* instance;
-    const ShadingContext* shading;
-    ProjectionView projection;
-    std::uint32_t count;
-    const std::int32_t *x, *y;     // picture position
-    const std::int32_t* triangle;  // within the instance
-    const float* orientation;
-    float *r, *g, *b, *alpha, *distance;  // radiance, alpha, distance along the view axis
+// --- tiles ------------------------------------------------------------------------------------
+
+// What one chunk has for one tile.
+struct TileBin {
+    const SmallTriangle* small;
+    const LargeTriangle* large;
+    const BinRun* runs;
+    std::uint32_t run_count;
 };
 
-// A row of pixels to develop: sums over the samples in, display values out. Padded to kMaxLanes.
+// Where a triangle of a tile comes from.
+struct TileTriangle {
+    std::uint32_t triangle, instance;
+};
+
+// What kernels need to make surface records and shade them.
+struct SurfaceSource {
+    const InstanceView* instances;
+    const ShadingContext* shading;
+    ProjectionView projection;
+    // The scalar path, for triangles that are clipped.
+    void (*make_record)(const InstanceView& instance, std::uint32_t triangle, const ProjectionView& projection,
+                        const SurfaceLayout& layout, float* record);
+};
+
+struct TileCounters {
+    std::uint64_t samples_covered = 0;   // inside a triangle and tested for depth
+    std::uint64_t fragments_passed = 0;  // and in front
+    std::uint64_t blocks_drawn = 0, blocks_hidden = 0;  // of large triangles, by hierarchical Z
+};
+
+// Coverage and depth of a tile at one sample position per pixel. Ordinals count the tile's triangles
+// from 1 in the order of submission; 0 is nothing.
+struct VisibilityJob {
+    int x0, y0;  // first pixel
+    int side;    // of the tile
+    SamplePosition offset;
+    const TileBin* bins;
+    std::uint32_t bin_count;
+    const SurfaceSource* source;
+    bool hierarchical_z, count;
+    float* depth;            // by pixel; infinite outside the picture
+    std::uint32_t* ordinal;  // by pixel
+    float* floor;            // by block: no depth in it is lower
+    TileTriangle* triangles;  // out: by ordinal - 1
+    TileCounters counters;
+    // Receives one transparent fragment.
+    void (*add_fragment)(void* owner, std::uint32_t pixel, std::uint32_t ordinal, float depth);
+    void* owner;
+    std::uint32_t* overdraw;  // by pixel: samples that were tested; null where not wanted
+};
+
+// Which ordinals are seen: each once, in order.
+struct VisibleJob {
+    const std::uint32_t* ordinal;
+    int pixels;
+    std::uint32_t triangle_count;
+    std::uint8_t* seen;   // triangle_count + 1, cleared by the kernel
+    std::uint32_t* list;  // out
+    std::uint32_t count;  // out
+};
+
+// Makes the surface records of triangles of one instance, one after the other.
+struct SurfaceJob {
+    const SurfaceSource* source;
+    const InstanceView* instance;
+    SurfaceLayout layout;
+    const std::uint32_t* triangles;  // within the instance
+    std::uint32_t count;
+    float* records;  // padded by kMaxLanes records
+};
+
+// Surface points of one material and layout to shade.
+struct ShadeJob {
+    const SurfaceSource* source;
+    const MaterialView* material;
+    SurfaceLayout layout;
+    const float* records;
+    const std::uint32_t* record_of;  // by ordinal: where in `records`
+    // A whole tile: every pixel with an ordinal, at the sample offset.
+    int x0, y0, side;
+    SamplePosition offset;
+    const std::uint32_t* ordinal;
+    bool first;           // store the sums instead of adding to them
+    std::uint64_t* hit;   // by block: bit per pixel
+    // Or a list of points, padded to kMaxLanes.
+    const std::int32_t *x, *y;  // picture positions
+    const std::uint32_t* list;  // ordinals
+    std::uint32_t count;
+    float *r, *g, *b, *alpha;  // by pixel, or by point
+};
+
+// Develops a tile: sums over the samples in, display values out.
 struct DevelopJob {
     FilmView film;
     float weight;  // one over the number of samples
-    std::uint32_t count;
+    int side, width, height;  // width and height: within the picture
     const float *r, *g, *b, *alpha;
-    std::uint8_t* rgba;  // straight from the kernel, `count` pixels
+    std::uint8_t* rgba;  // the tile's first pixel
+    std::size_t stride;  // bytes from row to row
+};
+
+// Writes labels of a tile from its depth and ordinals.
+struct LabelJob {
+    ProjectionView projection;
+    int side, width, height;
+    const float* depth;
+    const std::uint32_t* ordinal;
+    const TileTriangle* triangles;
+    const InstanceView* instances;
+    float* distance;          // the tile's first pixel; null where not wanted
+    std::uint32_t* triangle;  // 1 + number in the frame
+    std::size_t stride;       // pixels from row to row
 };
 
 struct RasterKernels {
+    // The lowest and highest of `count` indices.
+    void (*index_range)(const std::uint32_t* indices, std::uint32_t count, std::uint32_t& low, std::uint32_t& high);
+    void (*transform)(const VertexJob& job);
     void (*setup)(SetupJob& job);
     void (*visibility)(VisibilityJob& job);
-    void (*shade)(const ShadeJob& job);
+    void (*find_visible)(VisibleJob& job);
+    void (*make_surfaces)(const SurfaceJob& job);
+    void (*shade_tile)(const ShadeJob& job);
+    void (*shade_points)(const ShadeJob& job);
     void (*develop)(const DevelopJob& job);
+    void (*label)(const LabelJob& job);
 };
 
 }  // namespace tessera

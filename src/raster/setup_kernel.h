@@ -1,127 +1,212 @@
-// Set-up of as many triangles at a time as there are lanes: transform, out-codes, snapping, facing,
-// culling, depth planes. Part of the kernel file, once per instruction set.
+// Set-up of as many triangles at a time as there are lanes: trivial rejects, snapping, facing, culling,
+// depth planes, the coverage of small triangles, bins. Part of the kernel file, once per instruction
+// set.
 #pragma once
 
-#include "raster/raster_data.h"
+#include "raster/vertex_kernel.h"
 
 namespace tessera::TESSERA_ISA_NAMESPACE {
 
-// Triangles whose box is smaller than 64 pixels have areas that are exact in 32 bits.
-inline constexpr std::int32_t kSmall = 64 * 256;
-
-TESSERA_INLINE Vec3T<Float> gather_position(const float* positions, Int vertex) {
-    const Int at = vertex * Int(3);
-    return {gather(positions, at), gather(positions, at + Int(1)), gather(positions, at + Int(2))};
-}
-
-// Whether a sample lies between two coordinates (inclusive) and within 0 .. limit pixels.
-TESSERA_INLINE Mask reaches_sample(Int low, Int high, std::int32_t offset, float limit) {
-    const Int first = max((low - Int(offset) + Int(255)) >> 8, Int(0));
-    const Int last = min((high - Int(offset)) >> 8, Int(static_cast<std::int32_t>(limit) - 1));
-    return !(first > last);
-}
+// Triangles whose box is smaller than 64 pixels have areas and edges that are exact in 32 bits.
+inline constexpr std::int32_t kExactSide = 64 * 256;
 
 TESSERA_INLINE void count_lanes(std::uint64_t& counter, Mask m) {
     counter += static_cast<std::uint64_t>(__builtin_popcount(mask_bits(m)));
 }
 
+// Corner k of kLanes triangles, three indices each.
+TESSERA_INLINE void load_corner(const TransformedVertex* vertices, const std::uint32_t* indices, int k, Float& x,
+                                Float& y, Float& z, Uint& code) {
+    Float code_bits;
+    load_records([&](int lane) { return vertices[indices[3 * lane + k]].numbers; }, x, y, z, code_bits);
+    code = as_uint(code_bits);
+}
+
+// The samples that a box may hold.
+struct SampleBox {
+    Int left, top, right, bottom;  // inclusive
+};
+
+// One edge of kLanes triangles at a sample, as E / 256 rounded down, which keeps the sign of E and
+// steps by whole a and b per pixel (see TileEdge).
+struct LaneEdge {
+    Int a, b, e;
+
+    TESSERA_INLINE LaneEdge(Int ax, Int ay, Int bx, Int by, Int x, Int y) {
+        a = ay - by;
+        b = bx - ax;
+        const Mask top_left = (a > Int(0)) | ((a == Int(0)) & (b > Int(0)));
+        e = (a * (x - ax) + b * (y - ay) + select(top_left, Int(0), Int(-1))) >> 8;
+    }
+};
+
+// Coverage of 8x8 samples from (x, y) on by triangles that run clockwise on the screen, a bit each.
+// `wide` and `high`: whether any of the triangles reaches beyond four columns or rows.
+TESSERA_INLINE void cover_small(const Int (&x)[3], const Int (&y)[3], Int first_x, Int first_y, bool wide, bool high,
+                                Uint (&rows)[2]) {
+    LaneEdge e0(x[0], y[0], x[1], y[1], first_x, first_y), e1(x[1], y[1], x[2], y[2], first_x, first_y),
+        e2(x[2], y[2], x[0], y[0], first_x, first_y);
+    const int columns = wide ? 8 : 4;
+    rows[1] = Uint(0u);
+    for (int half = 0; half < (high ? 2 : 1); ++half) {
+        Uint covered(0u);
+        for (int row = 0; row < 4; ++row) {
+            Int r0 = e0.e, r1 = e1.e, r2 = e2.e;
+            for (int column = 0; column < columns; column += 4)
+                for (int i = 0; i < 4; ++i) {
+                    const std::uint32_t bit = 1u << (8 * row + column + i);
+                    covered |= select(or3(r0, r1, r2) < Int(0), Uint(0u), Uint(bit));
+                    r0 += e0.a, r1 += e1.a, r2 += e2.a;
+                }
+            e0.e += e0.b, e1.e += e1.b, e2.e += e2.b;
+        }
+        rows[half] = covered;
+    }
+}
+
+// Adds `count` small triangles from `first` on to a tile: to its last run, where they follow on it.
+TESSERA_INLINE void add_run(ChunkArrays& c, std::uint32_t tile, std::uint32_t first, std::uint32_t count) {
+    if (c.run_count > 0 && c.run_tiles[c.run_count - 1] == tile) {
+        BinRun& run = c.runs[c.run_count - 1];
+        if (!run.large() && run.first + run.count == first) {
+            run.count += count;
+            return;
+        }
+    }
+    c.run_tiles[c.run_count] = tile;
+    c.runs[c.run_count++] = {first, count};
+}
+
 inline void setup(SetupJob& job) {
     constexpr int kWidth = kLanes<Float>;
-    const InstanceView& instance = *job.instance;
-    const float width = job.projection.width, height = job.projection.height;
-    const auto* indices = reinterpret_cast<const std::int32_t*>(instance.mesh.triangles);
-    job.record_count = job.slow_count = 0;
-    alignas(64) std::int32_t sx[3][kWidth], sy[3][kWidth], anchor_x[kWidth], anchor_y[kWidth];
-    alignas(64) float plane[5][kWidth], orientation[kWidth];
+    const Int last_x(static_cast<std::int32_t>(job.width) - 1), last_y(static_cast<std::int32_t>(job.height) - 1);
+    alignas(64) float made[kWidth][sizeof(SmallTriangle) / sizeof(float)];
+    // So that indices count from the first vertex of the mesh.
+    const TransformedVertex* const vertices = job.vertices - job.vertex_base;
+    std::uint32_t rest_indices[3 * kWidth];
+    alignas(64) std::int32_t vx[3][kWidth], vy[3][kWidth], tile_x[2][kWidth], tile_y[2][kWidth];
     for (std::uint32_t t = 0; t < job.count; t += kWidth) {
         const std::uint32_t left = job.count - t;
-        const Mask valid = first_n<Float>(left < kWidth ? static_cast<int>(left) : kWidth);
-        // Lanes beyond the end repeat the last triangle.
-        const Int number =
-            min(iota<Int>() + Int(static_cast<std::int32_t>(t)), Int(static_cast<std::int32_t>(job.count) - 1));
-        const Int corner = (number + Int(static_cast<std::int32_t>(job.first))) * Int(3);
-        ClipVertex<Float> clip[3];
-        Uint all(~0u), some(0u);
-        Mask finite = valid;
-        for (int k = 0; k < 3; ++k) {
-            clip[k] = to_clip(instance.object_to_clip,
-                              gather_position(instance.mesh.positions, gather(indices, corner + Int(k))));
-            const Uint code = out_code(clip[k]);
-            all &= code;
-            some |= code;
-            const Float largest(kLargestCoordinate);
-            finite &= (abs(clip[k].x) < largest) & (abs(clip[k].y) < largest) & (abs(clip[k].z) < largest) &
-                      (abs(clip[k].w) < largest);
+        const Mask valid = first_n<Float>(left < std::uint32_t{kWidth} ? static_cast<int>(left) : kWidth);
+        const std::uint32_t* indices = job.indices + 3 * std::size_t{t};
+        if (left < std::uint32_t{kWidth}) {  // the last triangle repeated
+            for (std::uint32_t i = 0; i < 3 * std::uint32_t{kWidth}; ++i)
+                rest_indices[i] = indices[i < 3 * left ? i : 3 * (left - 1) + i % 3];
+            indices = rest_indices;
         }
-        const Mask outside = finite & ((all & Uint(~static_cast<std::uint32_t>(kOutGuard))) != Uint(0u));
-        const Mask clipped = finite & !outside & ((some & Uint(kMustClip)) != Uint(0u));
-        const Mask inside = finite & !outside & !clipped;
-
         PictureVertex<Float> p[3];
         Float z[3];
+        Uint code[3];
+        for (int k = 0; k < 3; ++k) load_corner(vertices, indices, k, p[k].x, p[k].y, z[k], code[k]);
+        const Uint every = code[0] & code[1] & code[2], some = or3(code[0], code[1], code[2]);
+        const Mask usable = valid & ((some & Uint(kUnusable)) == Uint(0u));
+        const Mask outside = usable & ((every & Uint(~static_cast<std::uint32_t>(kOutGuard))) != Uint(0u));
+        const Mask clipped = usable & !outside & ((some & Uint(kMustClip)) != Uint(0u));
+        const Mask inside = usable & !outside & !clipped;
+
         for (int k = 0; k < 3; ++k) {
-            p[k] = to_picture(clip[k], width, height);
-            // Lanes that are out anyway must not overflow.
-            p[k].snapped_x = select(inside, p[k].snapped_x, Int(0));
-            p[k].snapped_y = select(inside, p[k].snapped_y, Int(0));
-            z[k] = clip[k].z / clip[k].w;
+            p[k].snapped_x = nearest_int(p[k].x);
+            p[k].snapped_y = nearest_int(p[k].y);
         }
         const Int low_x = min(min(p[0].snapped_x, p[1].snapped_x), p[2].snapped_x);
         const Int high_x = max(max(p[0].snapped_x, p[1].snapped_x), p[2].snapped_x);
         const Int low_y = min(min(p[0].snapped_y, p[1].snapped_y), p[2].snapped_y);
         const Int high_y = max(max(p[0].snapped_y, p[1].snapped_y), p[2].snapped_y);
-        const Mask small = inside & (high_x - low_x < Int(kSmall)) & (high_y - low_y < Int(kSmall));
-        const Int dx1 = select(small, p[1].snapped_x - p[0].snapped_x, Int(0)),
-                  dy1 = select(small, p[1].snapped_y - p[0].snapped_y, Int(0));
-        const Int dx2 = select(small, p[2].snapped_x - p[0].snapped_x, Int(0)),
-                  dy2 = select(small, p[2].snapped_y - p[0].snapped_y, Int(0));
-        const Int area = dx1 * dy2 - dx2 * dy1;
-        const Mask flat = small & (area == Int(0));
+        const Mask exact = inside & (max(high_x - low_x, high_y - low_y) < Int(kExactSide));
+        const Int dx1 = p[1].snapped_x - p[0].snapped_x, dy1 = p[1].snapped_y - p[0].snapped_y;
+        const Int dx2 = p[2].snapped_x - p[0].snapped_x, dy2 = p[2].snapped_y - p[0].snapped_y;
+        // Meaningless, but harmless, where not exact.
+        const Int area = as_int(as_uint(dx1) * as_uint(dy2) - as_uint(dx2) * as_uint(dy1));
+        const Mask flat = exact & (area == Int(0));
         const Mask counter_clockwise = area < Int(0);
-        const Mask front = instance.handedness > 0 ? counter_clockwise : !counter_clockwise;
-        const Mask facing = job.double_sided ? small : small & front;
+        const Mask front = job.instance->handedness > 0 ? counter_clockwise : !counter_clockwise;
+        const Mask facing = job.double_sided ? exact : exact & front;
         Mask keep = facing & !flat;
-        if (job.one_sample)
-            keep &= reaches_sample(low_x, high_x, job.sample.x, width) &
-                    reaches_sample(low_y, high_y, job.sample.y, height);
-
         count_lanes(job.counters.frustum, outside);
-        count_lanes(job.counters.degenerate, (valid & !finite) | flat);
-        count_lanes(job.counters.backface, small & !flat & !facing);
+        count_lanes(job.counters.degenerate, (valid & !usable) | flat);
+        count_lanes(job.counters.backface, exact & !flat & !facing);
+        const std::uint32_t slow = mask_bits(clipped | (inside & !exact));
+        if (!(mask_bits(keep) | slow)) continue;
 
-        const std::uint32_t slow = mask_bits(clipped | (inside & !small));
-        for (std::uint32_t bits = slow; bits; bits &= bits - 1)
-            job.slow[job.slow_count++] = job.first + t + static_cast<std::uint32_t>(__builtin_ctz(bits));
-        std::uint32_t kept = mask_bits(keep);
-        if (!kept) continue;
-        const DepthPlane<Float> depth = depth_plane(p, z);
-        for (int k = 0; k < 3; ++k) {
-            store(sx[k], p[k].snapped_x);
-            store(sy[k], p[k].snapped_y);
+        SampleBox box;
+        box.left = max((low_x + Int(255 - job.sample.x)) >> 8, Int(0));
+        box.top = max((low_y + Int(255 - job.sample.y)) >> 8, Int(0));
+        box.right = min((high_x - Int(job.sample.x)) >> 8, last_x);
+        box.bottom = min((high_y - Int(job.sample.y)) >> 8, last_y);
+        if (job.one_sample) {
+            const Mask reached = !((box.left > box.right) | (box.top > box.bottom));
+            count_lanes(job.counters.no_sample, keep & !reached);
+            keep &= reached;
         }
-        store(anchor_x, depth.anchor_x);
-        store(anchor_y, depth.anchor_y);
-        const Float values[5] = {depth.depth, depth.ddx, depth.ddy, depth.lowest, depth.highest};
-        for (int k = 0; k < 5; ++k) store(plane[k], values[k]);
-        store(orientation, select(counter_clockwise, Float(1.0f), Float(-1.0f)));
-        for (; kept; kept &= kept - 1) {
-            const int i = __builtin_ctz(kept);
-            TriangleRecord& r = job.records[job.record_count++];
-            // Counter-clockwise ones are turned, so that all run clockwise on the screen.
-            const int b = orientation[i] > 0 ? 2 : 1, c = 3 - b;
-            r.v[0] = {sx[0][i], sy[0][i]};
-            r.v[1] = {sx[b][i], sy[b][i]};
-            r.v[2] = {sx[c][i], sy[c][i]};
-            r.depth.anchor_x = anchor_x[i];
-            r.depth.anchor_y = anchor_y[i];
-            r.depth.depth = plane[0][i];
-            r.depth.ddx = plane[1][i];
-            r.depth.ddy = plane[2][i];
-            r.depth.lowest = plane[3][i];
-            r.depth.highest = plane[4][i];
-            r.triangle = job.first + t + static_cast<std::uint32_t>(i);
-            r.instance = job.instance_index;
-            r.orientation = orientation[i];
+        std::uint32_t kept = mask_bits(keep);
+        if (!(kept | slow)) continue;
+        if (job.arrays.room() < kMaxLanes) job.reserve(job);
+
+        // Counter-clockwise ones are turned, so that all run clockwise on the screen.
+        const Int x[3] = {p[0].snapped_x, select(counter_clockwise, p[2].snapped_x, p[1].snapped_x),
+                          select(counter_clockwise, p[1].snapped_x, p[2].snapped_x)};
+        const Int y[3] = {p[0].snapped_y, select(counter_clockwise, p[2].snapped_y, p[1].snapped_y),
+                          select(counter_clockwise, p[1].snapped_y, p[2].snapped_y)};
+        std::uint32_t small = 0;
+        Uint rows[2];
+        if (job.masks && kept) {
+            const Int width = box.right - box.left, height = box.bottom - box.top;
+            const Mask fits = keep & (max(width, height) < Int(kBlockSide));
+            if (any(fits)) {
+                const bool wide = any(fits & (width > Int(3))), high = any(fits & (height > Int(3)));
+                cover_small(x, y, (box.left << 8) + Int(job.sample.x), (box.top << 8) + Int(job.sample.y), wide, high,
+                            rows);
+                const Mask covers = fits & ((rows[0] | rows[1]) != Uint(0u));
+                small = mask_bits(covers);
+                const std::uint32_t nothing = mask_bits(fits) & ~small;
+                job.counters.no_sample += static_cast<std::uint64_t>(__builtin_popcount(nothing));
+                kept &= ~nothing;
+                if (!(kept | slow)) continue;
+            }
+        }
+        if (kept) {
+            const DepthPlane<Float> depth = depth_plane(p, z);
+            const Uint number = as_uint(iota<Int>()) + Uint(job.first + t);
+            store_records([&](int i) { return made[i]; }, as_float(depth.anchor_x),
+                          as_float(depth.anchor_y), depth.depth, depth.ddx);
+            store_records([&](int i) { return made[i] + 4; }, depth.ddy, depth.lowest,
+                          depth.highest, as_float((box.top << 16) | box.left));
+            if (small) {
+                store_records([&](int i) { return made[i] + 8; }, as_float(rows[0]),
+                              as_float(rows[1]), as_float(number), as_float(Uint(job.instance_index)));
+                store(tile_x[0], box.left >> job.tile_shift);
+                store(tile_y[0], box.top >> job.tile_shift);
+                store(tile_x[1], box.right >> job.tile_shift);
+                store(tile_y[1], box.bottom >> job.tile_shift);
+            }
+            if (kept & ~small)
+                for (int k = 0; k < 3; ++k) {
+                    store(vx[k], x[k]);
+                    store(vy[k], y[k]);
+                }
+        }
+        for (std::uint32_t rest = kept | slow; rest; rest &= rest - 1) {
+            const int i = __builtin_ctz(rest);
+            const std::uint32_t bit = rest & (0u - rest);
+            ChunkArrays& c = job.arrays;
+            if (small & bit) {
+                const std::uint32_t n = c.small_count++;
+                __builtin_memcpy(&c.small[n], made[i], sizeof(SmallTriangle));
+                for (std::int32_t row = tile_y[0][i]; row <= tile_y[1][i]; ++row)
+                    for (std::int32_t column = tile_x[0][i]; column <= tile_x[1][i]; ++column)
+                        add_run(c, static_cast<std::uint32_t>(row * job.tile_columns + column), n, 1);
+                ++job.counters.small;
+            } else if (kept & bit) {
+                LargeTriangle& r = c.large[c.large_count++];
+                for (int k = 0; k < 3; ++k) r.v[k] = {vx[k][i], vy[k][i]};
+                __builtin_memcpy(&r.depth, made[i], sizeof(r.depth));
+                r.triangle = job.first + t + static_cast<std::uint32_t>(i);
+                r.instance = job.instance_index;
+                ++job.counters.large;
+                job.bin_large(job);
+            } else {
+                job.set_up_slowly(job, job.first + t + static_cast<std::uint32_t>(i));
+            }
         }
     }
 }

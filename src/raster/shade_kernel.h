@@ -1,78 +1,185 @@
-// Shading of the points of one instance, as many at a time as there are lanes, and the film. The same
-// templates as the reference, over vectors. Part of the kernel file, once per instruction set.
+// Visible samples to radiance: as many at a time as there are lanes, through the templates that the
+// reference uses with plain numbers. Part of a kernel file, once per instruction set.
 #pragma once
 
-#include "raster/setup_kernel.h"
+#include "raster/surface_kernel.h"
 
 namespace tessera::TESSERA_ISA_NAMESPACE {
 
-TESSERA_INLINE Corner<Float> gather_corner(const MeshView& mesh, Int vertex) {
-    Corner<Float> c;
+// What the lanes of a batch share.
+struct Batch {
+    const ShadeJob& job;
+    const ShadingContext& context;
+    const MaterialView& material;
+    const PictureRays rays;
+
+    explicit Batch(const ShadeJob& j)
+        : job(j), context(*j.source->shading), material(*j.material), rays(j.source->projection) {}
+};
+
+// Materials without any texture.
+template <class Layout>
+struct Untextured : Layout {
+    static constexpr bool kTextured = false;
+};
+template <class Layout>
+struct Textured : Layout {
+    static constexpr bool kTextured = true;
+};
+
+// Calls visit(kind) with the kind of the job.
+template <class Visit>
+TESSERA_INLINE void with_kind(const ShadeJob& job, Visit&& visit) {
+    bool textured = false;
+    for (const TextureInput& in : job.material->inputs) textured |= in.texture != nullptr;
+    if (!textured && job.layout == NormalOnly::kLayout) return visit(Untextured<NormalOnly>());
+    if (textured && job.layout == NormalAndUv::kLayout) return visit(Textured<NormalAndUv>());
+    if (!textured && job.layout == ColorOnly::kLayout) return visit(Untextured<ColorOnly>());
+    visit(Textured<AnyLayout>());
+}
+
+// Triangles that a vector may show before its lanes fetch records of their own.
+inline constexpr int kFew = kLanes<Float> < 4 ? kLanes<Float> : 4;
+
+TESSERA_INLINE void blend_samples(const SurfaceLayout& l, Mask mask, const SurfaceSample<Float>& from,
+                                  SurfaceSample<Float>& to) {
+    for (int k = 0; k < l.count; ++k) to.value[k] = select(mask, from.value[k], to.value[k]);
+    to.inverse_w_ddx = select(mask, from.inverse_w_ddx, to.inverse_w_ddx);
+    to.inverse_w_ddy = select(mask, from.inverse_w_ddy, to.inverse_w_ddy);
+    for (int set = 0; set < kMaxUvSets; ++set) {
+        if (l.uv[set] < 0) continue;
+        const Footprint<Float>& a = from.uv_plane[set];
+        Footprint<Float>& b = to.uv_plane[set];
+        b = {select(mask, a.ux, b.ux), select(mask, a.vx, b.vx), select(mask, a.uy, b.uy), select(mask, a.vy, b.vy)};
+    }
+}
+
+// The sample of each lane's own triangle. `place` is where the lanes' records start; `used` the lanes
+// that count, at least one.
+template <class Kind>
+TESSERA_INLINE void sample_lanes(const ShadeJob& job, const Uint& place, std::uint32_t used, Float x, Float y,
+                                 SurfaceSample<Float>& sample, Float& side, Float& sign) {
+    constexpr int kWidth = kLanes<Float>;
+    const SurfaceLayout& l = Kind::layout(job);
+    alignas(64) std::uint32_t places[kWidth];
+    store(places, place);
+    const auto sample_of = [&](const float* record, SurfaceSample<Float>& out) {
+        sample_planes(l, x, y, [record](int i) { return Float(record[i]); }, out);
+    };
+    // The few triangles that the lanes show, and who shows them.
+    std::uint32_t first[kFew] = {}, rest = used;
+    Mask shows[kFew];
+    int few = 0;
+    for (; few < kFew && rest; ++few) {
+        first[few] = places[__builtin_ctz(rest)];
+        shows[few] = place == Uint(first[few]);
+        rest &= ~mask_bits(shows[few]);
+    }
+    if (!rest) {
+        const float* record = job.records + first[0];
+        sample_of(record, sample);
+        side = Float(record[2]);
+        sign = Float(record[3]);
+        for (int n = 1; n < few; ++n) {
+            record = job.records + first[n];
+            SurfaceSample<Float> other;
+            sample_of(record, other);
+            blend_samples(l, shows[n], other, sample);
+            side = select(shows[n], Float(record[2]), side);
+            sign = select(shows[n], Float(record[3]), sign);
+        }
+        return;
+    }
+    Float numbers[kMaxSurfaceFloats];
+    const int floats = surface_floats(l);
+    for (int i = 0; i < floats; i += 4)
+        load_records([&](int lane) { return job.records + places[lane] + i; }, numbers[i], numbers[i + 1],
+                     numbers[i + 2], numbers[i + 3]);
+    sample_planes(l, x, y, [&numbers](int i) { return numbers[i]; }, sample);
+    side = numbers[2];
+    sign = numbers[3];
+}
+
+template <class Kind>
+TESSERA_INLINE ShadedPoint<Float> shade_lanes(const Batch& batch, const Uint& place, std::uint32_t used, Float x,
+                                              Float y) {
+    SurfaceSample<Float> sample;
+    Float side, sign;
+    sample_lanes<Kind>(batch.job, place, used, x, y, sample, side, sign);
+    const SurfacePoint<Float> s = surface_point(Kind::layout(batch.job), batch.rays, sample, x, y, side, sign,
+                                                batch.context.footprint_scale);
+    return shade<Kind::kTextured>(batch.context, batch.material, s,
+                                  [](int, const LightSample<Float>&) { return Float(1.0f); });
+}
+
+// Visits batches of lanes: a tile in the order of its blocks, or a list of points.
+// visit(ordinals, used, x, y, where the answer goes).
+template <class Visit>
+TESSERA_INLINE void for_each_batch(const ShadeJob& job, Visit&& visit) {
+    constexpr int kWidth = kLanes<Float>;
+    constexpr std::uint32_t kAll = (1u << (kWidth - 1) << 1) - 1;
+    if (job.list) {
+        for (std::uint32_t i = 0; i < job.count; i += kWidth) {
+            const std::uint32_t left = job.count - i;
+            visit(load<Uint>(job.list + i), left < kWidth ? (1u << left) - 1 : kAll, to_float(load<Int>(job.x + i)),
+                  to_float(load<Int>(job.y + i)), static_cast<int>(i));
+        }
+        return;
+    }
+    const int blocks = job.side / kBlockSide;
+    const Int columns = iota<Int>() & Int(kBlockSide - 1), rows = iota<Int>() >> 3;
+    for (int block = 0; block < blocks * blocks; ++block) {
+        const int px = block % blocks * kBlockSide, py = block / blocks * kBlockSide;
+        for (int at = 0; at < kBlockPixels; at += kWidth) {
+            const int place = block * kBlockPixels + at;
+            const Uint ordinals = load<Uint>(job.ordinal + place);
+            const std::uint32_t used = mask_bits(ordinals != Uint(0u));
+            const Int column = columns + Int(px + at % kBlockSide), row = rows + Int(py + at / kBlockSide);
+            visit(ordinals, used, to_float((column << 8) + Int(256 * job.x0 + job.offset.x)),
+                  to_float((row << 8) + Int(256 * job.y0 + job.offset.y)), place);
+        }
+    }
+}
+
+template <class Kind>
+inline void shade_tile_as(const ShadeJob& job) {
+    const Batch batch(job);
     const Float zero(0.0f);
-    const Int two = vertex * Int(2), three = vertex * Int(3), four = vertex * Int(4);
-    c.position = gather_position(mesh.positions, vertex);
-    c.normal = {gather(mesh.normals, three), gather(mesh.normals, three + Int(1)),
-                gather(mesh.normals, three + Int(2))};
-    c.tangent = c.color = {zero, zero, zero, zero};
-    if (mesh.tangents)
-        c.tangent = {gather(mesh.tangents, four), gather(mesh.tangents, four + Int(1)),
-                     gather(mesh.tangents, four + Int(2)), gather(mesh.tangents, four + Int(3))};
-    if (mesh.colors)
-        c.color = {gather(mesh.colors, four), gather(mesh.colors, four + Int(1)), gather(mesh.colors, four + Int(2)),
-                   gather(mesh.colors, four + Int(3))};
-    for (int i = 0; i < kMaxUvSets; ++i) {
-        c.uv[i] = {zero, zero};
-        if (mesh.uvs[i]) c.uv[i] = {gather(mesh.uvs[i], two), gather(mesh.uvs[i], two + Int(1))};
-    }
-    return c;
+    for_each_batch(job, [&](const Uint& ordinals, std::uint32_t used, Float x, Float y, int at) {
+        if (!used) {
+            if (!job.first) return;
+            store(job.r + at, zero);
+            store(job.g + at, zero);
+            store(job.b + at, zero);
+            store(job.alpha + at, zero);
+            return;
+        }
+        const Mask covered = ordinals != Uint(0u);
+        const ShadedPoint<Float> c =
+            shade_lanes<Kind>(batch, gather(job.record_of, as_int(ordinals)), used, x, y);
+        const auto add = [&](float* plane, Float v) {
+            const Float before = job.first ? zero : load<Float>(plane + at);
+            store(plane + at, before + select(covered, v, zero));
+        };
+        add(job.r, c.radiance.x);
+        add(job.g, c.radiance.y);
+        add(job.b, c.radiance.z);
+        add(job.alpha, Float(1.0f));
+        job.hit[at / kBlockPixels] |= static_cast<std::uint64_t>(used) << at % kBlockPixels;
+    });
 }
 
-// The surface points of triangles of one instance at picture positions.
-inline SurfacePoint<Float> gather_surface(const InstanceView& instance, const ShadingContext& context,
-                                          const ProjectionView& picture, Int triangle, Float orientation, Int x,
-                                          Int y) {
-    const auto* indices = reinterpret_cast<const std::int32_t*>(instance.mesh.triangles);
-    Corner<Float> corners[3];
-    ClipVertex<Float> clip[3];
-    for (int k = 0; k < 3; ++k) {
-        corners[k] = gather_corner(instance.mesh, gather(indices, triangle * Int(3) + Int(k)));
-        clip[k] = to_clip(instance.object_to_clip, corners[k].position);
-    }
-    const Vec2T<Float> ndc = sample_ndc<Float>(x, y, picture.width, picture.height);
-    const Barycentrics<Float> b = barycentrics(clip, ndc, orientation, picture.width, picture.height);
-    return surface_point(instance, corners, b, orientation * Float(instance.handedness), context.footprint_scale);
-}
-
-inline void shade_points(const ShadeJob& job) {
-    constexpr int kWidth = kLanes<Float>;
-    const MaterialView& material = job.shading->materials[job.instance->material];
-    for (std::uint32_t i = 0; i < job.count; i += kWidth) {
-        const SurfacePoint<Float> s =
-            gather_surface(*job.instance, *job.shading, job.projection, load<Int>(job.triangle + i),
-                           load<Float>(job.orientation + i), load<Int>(job.x + i), load<Int>(job.y + i));
-        const ShadedPoint<Float> p =
-            shade(*job.shading, material, s, [](int, const LightSample<Float>&) { return Float(1.0f); });
-        store(job.r + i, p.radiance.x);
-        store(job.g + i, p.radiance.y);
-        store(job.b + i, p.radiance.z);
-        store(job.alpha + i, p.alpha);
-        store(job.distance + i, -s.position.z);
-    }
-}
-
-inline void develop_row(const DevelopJob& job) {
-    constexpr int kWidth = kLanes<Float>;
-    for (std::uint32_t i = 0; i < job.count; i += kWidth) {
-        const Float weight(job.weight);
-        const Vec3T<Float> mean{load<Float>(job.r + i) * weight, load<Float>(job.g + i) * weight,
-                                load<Float>(job.b + i) * weight};
-        const DisplayPixel<Float> d = develop(job.film, mean, load<Float>(job.alpha + i) * weight);
-        const Int packed = d.r | (d.g << 8) | (d.b << 16) | (d.a << 24);
-        alignas(64) std::int32_t pixels[kWidth];
-        store(pixels, packed);
-        const std::uint32_t left = job.count - i;
-        __builtin_memcpy(job.rgba + 4 * i, pixels, 4 * (left < kWidth ? left : kWidth));
-    }
+template <class Kind>
+inline void shade_points_as(const ShadeJob& job) {
+    const Batch batch(job);
+    for_each_batch(job, [&](const Uint& ordinals, std::uint32_t used, Float x, Float y, int at) {
+        const ShadedPoint<Float> c =
+            shade_lanes<Kind>(batch, gather(job.record_of, as_int(ordinals)), used, x, y);
+        store(job.r + at, c.radiance.x);
+        store(job.g + at, c.radiance.y);
+        store(job.b + at, c.radiance.z);
+        store(job.alpha + at, c.alpha);
+    });
 }
 
 }  // namespace tessera::TESSERA_ISA_NAMESPACE

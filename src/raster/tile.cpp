@@ -3,85 +3,159 @@
 #include <tessera/error.h>
 
 #include <algorithm>
+#include <bit>
+#include <cstring>
 #include <limits>
 
 namespace tessera {
+namespace {
 
-Tile::Tile(const Frame& frame, const ShadingContext& shading, const RasterSettings& settings,
-           const RasterTargets& targets, const FrontEndResult& front)
-    : frame_(frame),
-      shading_(shading),
-      settings_(settings),
-      targets_(targets),
-      front_(front),
-      kernels_(raster_kernels(settings.isa)),
-      depth_(kTilePixels),
-      ordinal_(kTilePixels),
-      hit_(kTilePixels) {
-    for (std::vector<float>& plane : sum_) plane.resize(kTilePixels);
+void make_record(const InstanceView& instance, std::uint32_t triangle, const ProjectionView& projection,
+                 const SurfaceLayout& layout, float* record) {
+    TriangleSetup setup;
+    setup_triangle(instance, triangle, projection, setup);
+    if (setup.visible()) make_surface_record(instance, triangle, setup, projection, layout, record);
 }
 
-void Tile::draw(const TileGrid& grid, int index) {
-    x0_ = index % grid.columns * kTileSide;
-    y0_ = index / grid.columns * kTileSide;
-    width_ = std::min(kTileSide, static_cast<int>(frame_.projection.width) - x0_);
-    height_ = std::min(kTileSide, static_cast<int>(frame_.projection.height) - y0_);
-    gather_records(index);
-    for (std::vector<float>& plane : sum_) std::fill(plane.begin(), plane.end(), 0.0f);
-    std::fill(hit_.begin(), hit_.end(), char{0});
-    if (!records_.empty())
-        for (const SamplePosition& offset : settings_.samples) {
-            find_visible(offset);
-            shade_visible(offset);
-            add_sample();
-        }
-    if (targets_.distance || targets_.triangle) label();
-    develop();
-}
+// A pixel of a tile, whose pixels lie as blocks.
+struct TilePixel {
+    int x, y;
+    TilePixel(std::uint32_t pixel, int side) {
+        const int blocks = side / kBlockSide, block = static_cast<int>(pixel) / kBlockPixels,
+                  at = static_cast<int>(pixel) % kBlockPixels;
+        x = block % blocks * kBlockSide + at % kBlockSide;
+        y = block / blocks * kBlockSide + at / kBlockSide;
+    }
+};
 
-void Tile::gather_records(int tile) {
-    records_.clear();
-    const auto t = static_cast<std::size_t>(tile);
-    for (const BinnedChunk& chunk : front_.chunks) {
-        if (chunk.empty()) continue;
-        for (std::uint32_t e = chunk.begin[t]; e < chunk.begin[t + 1]; ++e)
-            records_.push_back(&chunk.records[chunk.entries[e]]);
+}  // namespace
+
+TileTask::TileTask(const Frame& f, const ShadingContext& s, const RasterSettings& o, const RasterTargets& t,
+                   const TileGrid& g, const FrontEnd& e)
+    : frame(f),
+      shading(s),
+      settings(o),
+      targets(t),
+      grid(g),
+      front(e),
+      kernels(raster_kernels(o.isa)),
+      source{f.instances.data(), &s, f.projection, &make_record} {
+    // The first instance that each one may be shaded with, by material.
+    std::vector<std::vector<std::uint32_t>> kinds;
+    for (std::uint32_t i = 0; i < f.instances.size(); ++i) {
+        const InstanceView& instance = f.instances[i];
+        layouts.push_back(
+            surface_layout(instance.mesh, s.materials[instance.material], f.projection.orthographic));
+        if (kinds.size() <= instance.material) kinds.resize(instance.material + 1);
+        std::vector<std::uint32_t>& same_material = kinds[instance.material];
+        const auto found = std::find_if(same_material.begin(), same_material.end(), [&](std::uint32_t other) {
+            return layouts[other] == layouts[i];
+        });
+        batch_of.push_back(found == same_material.end() ? i : *found);
+        if (batch_of[i] == i) same_material.push_back(i);
     }
 }
 
-std::uint32_t Tile::number(std::uint32_t ordinal) const {
-    const TriangleRecord& r = *records_[ordinal - 1];
-    return frame_.instances[r.instance].first_triangle + r.triangle;
+Tile::Tile() = default;
+
+void Tile::draw(const TileTask& task, int index) {
+    task_ = &task;
+    if (side_ != task.grid.side) {
+        side_ = task.grid.side;
+        const auto pixels = static_cast<std::size_t>(side_ * side_);
+        depth_.resize(pixels);
+        ordinal_.resize(pixels);
+        floor_.resize(pixels / kBlockPixels + kMaxLanes);
+        hit_.resize(pixels / kBlockPixels);
+        for (Planes* planes : {&sum_, &sample_})
+            for (std::vector<float>& plane : *planes) plane.resize(pixels);
+    }
+    x0_ = index % task.grid.columns * side_;
+    y0_ = index / task.grid.columns * side_;
+    width_ = std::min(side_, static_cast<int>(task.frame.projection.width) - x0_);
+    height_ = std::min(side_, static_cast<int>(task.frame.projection.height) - y0_);
+    triangle_count_ = task.front.bins_of(index, bins_);
+    if (task.settings.inspection.overdraw) overdraw_.assign(depth_.size(), 0);
+
+    bool centre_seen = false;
+    if (task.targets.colors()) {
+        if (triangle_count_ == 0) {
+            fill_background();
+        } else {
+            std::fill(hit_.begin(), hit_.end(), 0);
+            bool first = true;
+            for (const SamplePosition& offset : task.settings.samples) {
+                find_visible(offset);
+                take_sample(offset, first);
+                first = false;
+            }
+            develop();
+            const SamplePosition only = task.settings.samples[0];
+            centre_seen = task.settings.samples.size() == 1 && only.x == 128 && only.y == 128;
+        }
+    }
+    if (task.targets.labels()) label(centre_seen);
+    inspect();
 }
+
+std::uint32_t Tile::number(std::uint32_t ordinal) const {
+    const TileTriangle& t = triangles_[ordinal - 1];
+    return task_->frame.instances[t.instance].first_triangle + t.triangle;
+}
+
+std::size_t Tile::picture_place(std::uint32_t pixel) const {
+    const TilePixel p(pixel, side_);
+    return static_cast<std::size_t>(y0_ + p.y) * static_cast<std::size_t>(task_->frame.projection.width) +
+           static_cast<std::size_t>(x0_ + p.x);
+}
+
+// --- visibility -------------------------------------------------------------------------------
 
 void Tile::add_fragment(void* owner, std::uint32_t pixel, std::uint32_t ordinal, float depth) {
     Tile& tile = *static_cast<Tile*>(owner);
-    if (tile.fragments_.size() >= tile.settings_.max_fragments)
+    if (tile.fragments_.size() >= tile.task_->settings.max_fragments)
         throw Error(ErrorCode::kLimit, "transparent surfaces need more memory than the limit allows");
     tile.fragments_.push_back({pixel, ordinal, depth});
 }
 
-void Tile::find_visible(SamplePosition offset) {
+// Far everywhere, and infinitely near beyond the picture, where nothing passes.
+void Tile::clear_depth() {
     std::fill(depth_.begin(), depth_.end(), 0.0f);
+    std::fill(floor_.begin(), floor_.end(), 0.0f);
+    if (width_ == side_ && height_ == side_) return;
+    for (std::uint32_t pixel = 0; pixel < depth_.size(); ++pixel) {
+        const TilePixel p(pixel, side_);
+        if (p.x >= width_ || p.y >= height_) depth_[pixel] = std::numeric_limits<float>::infinity();
+        if (pixel % kBlockPixels == 0) floor_[pixel / kBlockPixels] = depth_[pixel];
+    }
+}
+
+void Tile::find_visible(SamplePosition offset) {
+    clear_depth();
     std::fill(ordinal_.begin(), ordinal_.end(), 0u);
     fragments_.clear();
     VisibilityJob job{};
     job.x0 = x0_;
     job.y0 = y0_;
-    job.width = width_;
-    job.height = height_;
+    job.side = side_;
     job.offset = offset;
-    job.records = records_.data();
-    job.record_count = static_cast<std::uint32_t>(records_.size());
-    job.instances = frame_.instances.data();
-    job.shading = &shading_;
-    job.projection = frame_.projection;
+    job.bins = bins_.data();
+    job.bin_count = static_cast<std::uint32_t>(bins_.size());
+    job.source = &task_->source;
+    job.hierarchical_z = task_->settings.hierarchical_z;
+    job.count = task_->settings.count || task_->settings.inspection.overdraw;
     job.depth = depth_.data();
     job.ordinal = ordinal_.data();
+    job.floor = floor_.data();
+    job.triangles = triangles_.reserve(triangle_count_);
     job.add_fragment = &add_fragment;
     job.owner = this;
-    kernels_.visibility(job);
-    fragments_passed += job.fragments_passed;
+    job.overdraw = task_->settings.inspection.overdraw ? overdraw_.data() : nullptr;
+    task_->kernels.visibility(job);
+    counters.samples_covered += job.counters.samples_covered;
+    counters.fragments_passed += job.counters.fragments_passed;
+    counters.blocks_drawn += job.counters.blocks_drawn;
+    counters.blocks_hidden += job.counters.blocks_hidden;
     sort_fragments();
 }
 
@@ -90,8 +164,7 @@ void Tile::sort_fragments() {
     if (fragments_.empty()) return;
     std::erase_if(fragments_, [&](const Fragment& f) {
         const float z = depth_[f.pixel];
-        return f.depth < z ||
-               (f.depth == z && ordinal_[f.pixel] != 0 && number(ordinal_[f.pixel]) <= number(f.ordinal));
+        return f.depth < z || (f.depth == z && ordinal_[f.pixel] != 0 && ordinal_[f.pixel] <= f.ordinal);
     });
     std::sort(fragments_.begin(), fragments_.end(), [](const Fragment& a, const Fragment& b) {
         if (a.pixel != b.pixel) return a.pixel < b.pixel;
@@ -100,163 +173,268 @@ void Tile::sort_fragments() {
     });
 }
 
-// Asks for the opaque points in the order of the pixels, then for the fragments in theirs.
-void Tile::shade_visible(SamplePosition offset) {
-    points_.clear();
-    const auto ask = [&](std::uint32_t pixel, std::uint32_t ordinal) {
-        points_.ordinal.push_back(ordinal);
-        points_.x.push_back(256 * (x0_ + static_cast<int>(pixel) % kTileSide) + offset.x);
-        points_.y.push_back(256 * (y0_ + static_cast<int>(pixel) / kTileSide) + offset.y);
-    };
-    for (int y = 0; y < height_; ++y)
-        for (int x = 0; x < width_; ++x) {
-            const auto pixel = static_cast<std::uint32_t>(y * kTileSide + x);
-            if (ordinal_[pixel] != 0) ask(pixel, ordinal_[pixel]);
+// --- shading ----------------------------------------------------------------------------------
+
+// Surface records of everything seen, in runs of one instance.
+void Tile::make_records() {
+    VisibleJob visible{};
+    visible.ordinal = ordinal_.data();
+    visible.pixels = side_ * side_;
+    visible.triangle_count = triangle_count_;
+    visible.seen = seen_.reserve(triangle_count_ + 1);
+    visible.list = visible_.reserve(triangle_count_ + 1);
+    task_->kernels.find_visible(visible);
+    std::uint32_t count = visible.count;
+    if (!fragments_.empty()) {
+        for (const Fragment& f : fragments_) seen_[f.ordinal] = 1;
+        count = 0;
+        for (std::uint32_t i = 1; i <= triangle_count_; ++i)
+            if (seen_[i]) visible_[count++] = i;
+    }
+    std::uint32_t* record_of = record_of_.reserve(triangle_count_ + 1);
+    record_of[0] = 0;
+    batch_.reserve(count);
+    std::size_t used = 0;
+    for (std::uint32_t first = 0; first < count;) {
+        const std::uint32_t instance = triangles_[visible_[first] - 1].instance;
+        SurfaceJob job{};
+        job.source = &task_->source;
+        job.instance = &task_->frame.instances[instance];
+        job.layout = task_->layouts[instance];
+        const auto floats = static_cast<std::size_t>(surface_floats(job.layout));
+        std::uint32_t end = first;
+        for (; end < count && triangles_[visible_[end] - 1].instance == instance; ++end) {
+            batch_[end - first] = triangles_[visible_[end] - 1].triangle;
+            record_of[visible_[end]] = static_cast<std::uint32_t>(used + (end - first) * floats);
         }
-    for (const Fragment& f : fragments_) ask(f.pixel, f.ordinal);
-    shade_points();
+        job.triangles = batch_.data();
+        job.count = end - first;
+        job.records = records_.reserve(used + (job.count + kMaxLanes) * floats, used) + used;
+        task_->kernels.make_surfaces(job);
+        used += job.count * floats;
+        first = end;
+    }
+    visible_[count] = 0;
 }
 
-// Shades the points in batches of one instance.
-void Tile::shade_points() {
-    const std::size_t count = points_.ordinal.size();
-    for (std::vector<float>* plane : {&points_.r, &points_.g, &points_.b, &points_.alpha, &points_.distance})
-        plane->resize(count);
+ShadeJob Tile::shade_job(std::uint32_t instance) const {
+    ShadeJob job{};
+    job.source = &task_->source;
+    job.material = &task_->shading.materials[task_->frame.instances[instance].material];
+    job.layout = task_->layouts[instance];
+    job.records = records_.data();
+    job.record_of = record_of_.data();
+    return job;
+}
+
+void Tile::take_sample(SamplePosition offset, bool first) {
+    make_records();
+    if (fragments_.empty()) return shade_opaque(offset, first, sum_);
+    shade_opaque(offset, true, sample_);
+    compose_fragments(offset);
+    for (std::size_t c = 0; c < 4; ++c)
+        for (std::size_t i = 0; i < depth_.size(); ++i) sum_[c][i] = (first ? 0.0f : sum_[c][i]) + sample_[c][i];
+}
+
+// The nearest opaque surface of every pixel: at once where the tile shows one material, else as a list.
+void Tile::shade_opaque(SamplePosition offset, bool first, Planes& planes) {
+    std::uint32_t batch = 0;
+    bool one = true, any = false;
+    for (const std::uint32_t* o = visible_.data(); *o != 0 && one; ++o) {
+        const std::uint32_t instance = triangles_[*o - 1].instance;
+        const AlphaMode mode = task_->shading.materials[task_->frame.instances[instance].material].alpha_mode;
+        if (mode == AlphaMode::kBlend) continue;
+        one = !any || batch == task_->batch_of[instance];
+        batch = task_->batch_of[instance];
+        any = true;
+    }
+    if (one && any) {
+        ShadeJob job = shade_job(batch);
+        job.x0 = x0_;
+        job.y0 = y0_;
+        job.side = side_;
+        job.offset = offset;
+        job.ordinal = ordinal_.data();
+        job.first = first;
+        job.hit = hit_.data();
+        job.r = planes[0].data();
+        job.g = planes[1].data();
+        job.b = planes[2].data();
+        job.alpha = planes[3].data();
+        task_->kernels.shade_tile(job);
+        return;
+    }
+    if (first)
+        for (std::vector<float>& plane : planes) std::fill(plane.begin(), plane.end(), 0.0f);
+    point_pixel_.clear();
+    point_ordinal_.clear();
+    for (std::uint32_t pixel = 0; pixel < ordinal_.size(); ++pixel)
+        if (ordinal_[pixel] != 0) {
+            point_pixel_.push_back(pixel);
+            point_ordinal_.push_back(ordinal_[pixel]);
+        }
+    shade_list(offset);
+    for (std::size_t i = 0; i < point_pixel_.size(); ++i) {
+        const std::uint32_t pixel = point_pixel_[i];
+        for (std::size_t c = 0; c < 3; ++c) planes[c][pixel] += point_color_[c][i];
+        planes[3][pixel] += 1.0f;
+        hit_[pixel / kBlockPixels] |= std::uint64_t{1} << pixel % kBlockPixels;
+    }
+}
+
+// Shades point_ordinal_ at point_pixel_ into point_color_, in batches of one material and layout.
+void Tile::shade_list(SamplePosition offset) {
+    const std::size_t count = point_ordinal_.size();
+    for (std::vector<float>& plane : point_color_) plane.resize(count);
+    const auto batch = [&](std::uint32_t point) {
+        return task_->batch_of[triangles_[point_ordinal_[point] - 1].instance];
+    };
     order_.resize(count);
     for (std::uint32_t i = 0; i < count; ++i) order_[i] = i;
-    const auto instance = [&](std::uint32_t point) { return records_[points_.ordinal[point] - 1]->instance; };
-    // Most tiles see few instances: a stable sort only where there is more than one.
-    const auto changes = [&](std::uint32_t a, std::uint32_t b) { return instance(a) != instance(b); };
-    if (std::adjacent_find(order_.begin(), order_.end(), changes) != order_.end())
-        std::stable_sort(order_.begin(), order_.end(),
-                         [&](std::uint32_t a, std::uint32_t b) { return instance(a) < instance(b); });
-
+    std::stable_sort(order_.begin(), order_.end(),
+                     [&](std::uint32_t a, std::uint32_t b) { return batch(a) < batch(b); });
     for (std::size_t first = 0; first < count;) {
+        const std::uint32_t current = batch(order_[first]);
         std::size_t end = first + 1;
-        while (end < count && instance(order_[end]) == instance(order_[first])) ++end;
-        const std::size_t n = end - first, padded = (n + kMaxLanes - 1) / kMaxLanes * kMaxLanes;
-        for (std::vector<std::int32_t>* v : {&batch_x_, &batch_y_, &batch_triangle_}) v->resize(padded);
-        batch_orientation_.resize(padded);
-        for (std::vector<float>& v : batch_) v.resize(padded);
+        while (end < count && batch(order_[end]) == current) ++end;
+        const std::size_t n = end - first, padded = n + kMaxLanes;
+        batch_x_.resize(padded);
+        batch_y_.resize(padded);
+        batch_ordinal_.resize(padded);
+        for (std::vector<float>& plane : batch_color_) plane.resize(padded);
         for (std::size_t i = 0; i < padded; ++i) {
             const std::uint32_t point = order_[first + std::min(i, n - 1)];
-            const TriangleRecord& r = *records_[points_.ordinal[point] - 1];
-            batch_x_[i] = points_.x[point];
-            batch_y_[i] = points_.y[point];
-            batch_triangle_[i] = static_cast<std::int32_t>(r.triangle);
-            batch_orientation_[i] = r.orientation;
+            const TilePixel p(point_pixel_[point], side_);
+            batch_x_[i] = 256 * (x0_ + p.x) + offset.x;
+            batch_y_[i] = 256 * (y0_ + p.y) + offset.y;
+            batch_ordinal_[i] = point_ordinal_[point];
         }
-        ShadeJob job{};
-        job.instance = &frame_.instances[instance(order_[first])];
-        job.shading = &shading_;
-        job.projection = frame_.projection;
-        job.count = static_cast<std::uint32_t>(n);
+        ShadeJob job = shade_job(current);
         job.x = batch_x_.data();
         job.y = batch_y_.data();
-        job.triangle = batch_triangle_.data();
-        job.orientation = batch_orientation_.data();
-        job.r = batch_[0].data();
-        job.g = batch_[1].data();
-        job.b = batch_[2].data();
-        job.alpha = batch_[3].data();
-        job.distance = batch_[4].data();
-        kernels_.shade(job);
-        for (std::size_t i = 0; i < n; ++i) {
-            const std::uint32_t point = order_[first + i];
-            points_.r[point] = batch_[0][i];
-            points_.g[point] = batch_[1][i];
-            points_.b[point] = batch_[2][i];
-            points_.alpha[point] = batch_[3][i];
-            points_.distance[point] = batch_[4][i];
-        }
+        job.list = batch_ordinal_.data();
+        job.count = static_cast<std::uint32_t>(n);
+        job.r = batch_color_[0].data();
+        job.g = batch_color_[1].data();
+        job.b = batch_color_[2].data();
+        job.alpha = batch_color_[3].data();
+        task_->kernels.shade_points(job);
+        for (std::size_t i = 0; i < n; ++i)
+            for (std::size_t c = 0; c < 4; ++c) point_color_[c][order_[first + i]] = batch_color_[c][i];
         first = end;
     }
 }
 
-// Composes the points of every pixel and adds them to the sums, in the order that shade_visible asked.
-void Tile::add_sample() {
-    std::size_t opaque = 0, over = 0;
-    for (int y = 0; y < height_; ++y)
-        for (int x = 0; x < width_; ++x) opaque += ordinal_[static_cast<std::size_t>(y * kTileSide + x)] != 0;
-    std::size_t point = 0, fragment = opaque;
-    for (int y = 0; y < height_; ++y)
-        for (int x = 0; x < width_; ++x) {
-            const auto pixel = static_cast<std::size_t>(y * kTileSide + x);
-            const bool has_fragments = over < fragments_.size() && fragments_[over].pixel == pixel;
-            if (ordinal_[pixel] == 0 && !has_fragments) continue;
-            Vec3T<float> c{0, 0, 0};
-            float alpha = 0;
-            if (ordinal_[pixel] != 0) {
-                c = {points_.r[point], points_.g[point], points_.b[point]};
-                alpha = 1;
-                ++point;
-            }
-            for (; over < fragments_.size() && fragments_[over].pixel == pixel; ++over, ++fragment) {
-                const float a = points_.alpha[fragment];
-                const Vec3T<float> s{points_.r[fragment], points_.g[fragment], points_.b[fragment]};
-                c = s * a + c * (1.0f - a);
-                alpha = a + alpha * (1.0f - a);
-            }
-            sum_[0][pixel] += c.x;
-            sum_[1][pixel] += c.y;
-            sum_[2][pixel] += c.z;
-            sum_[3][pixel] += alpha;
-            hit_[pixel] = 1;
-        }
-}
-
-// Labels at the pixel centre: of the nearest surface with alpha of at least one half.
-void Tile::label() {
-    const SamplePosition centre{128, 128};
-    const std::uint64_t passed = fragments_passed;
-    find_visible(centre);
-    fragments_passed = passed;
-    shade_visible(centre);
-    const auto picture_width = static_cast<std::size_t>(frame_.projection.width);
-    std::size_t point = 0;
-    for (int y = 0; y < height_; ++y)
-        for (int x = 0; x < width_; ++x) {
-            const auto pixel = static_cast<std::size_t>(y * kTileSide + x);
-            const std::size_t out =
-                static_cast<std::size_t>(y0_ + y) * picture_width + static_cast<std::size_t>(x0_ + x);
-            const bool hit = ordinal_[pixel] != 0;
-            if (targets_.distance)
-                targets_.distance[out] = hit ? points_.distance[point] : std::numeric_limits<float>::infinity();
-            if (targets_.triangle) targets_.triangle[out] = hit ? number(ordinal_[pixel]) + 1 : 0;
-            point += hit;
-        }
-    for (const Fragment& f : fragments_) {  // far to near: the last one that is solid enough stays
-        const std::size_t i = point++;
-        if (!(points_.alpha[i] >= 0.5f)) continue;
-        const std::size_t out = static_cast<std::size_t>(y0_ + static_cast<int>(f.pixel) / kTileSide) * picture_width +
-                                static_cast<std::size_t>(x0_ + static_cast<int>(f.pixel) % kTileSide);
-        if (targets_.distance) targets_.distance[out] = points_.distance[i];
-        if (targets_.triangle) targets_.triangle[out] = number(f.ordinal) + 1;
+// Lays the transparent fragments over the sample's colours, far to near.
+void Tile::compose_fragments(SamplePosition offset) {
+    point_pixel_.clear();
+    point_ordinal_.clear();
+    for (const Fragment& f : fragments_) {
+        point_pixel_.push_back(f.pixel);
+        point_ordinal_.push_back(f.ordinal);
+    }
+    shade_list(offset);
+    for (std::size_t i = 0; i < point_pixel_.size(); ++i) {
+        const std::uint32_t pixel = point_pixel_[i];
+        const float a = point_color_[3][i];
+        for (std::size_t c = 0; c < 3; ++c)
+            sample_[c][pixel] = point_color_[c][i] * a + sample_[c][pixel] * (1.0f - a);
+        sample_[3][pixel] = a + sample_[3][pixel] * (1.0f - a);
+        hit_[pixel / kBlockPixels] |= std::uint64_t{1} << pixel % kBlockPixels;
     }
 }
 
+// --- planes of the picture ----------------------------------------------------------------------
+
+// Labels at the pixel centre: of the nearest surface with alpha of at least one half. `seen`: the
+// centre is the sample whose visibility stands.
+void Tile::label(bool seen) {
+    const SamplePosition centre{128, 128};
+    if (!seen) {
+        const TileCounters before = counters;
+        find_visible(centre);
+        // Where colours are drawn the counters are theirs.
+        if (task_->targets.colors()) counters = before;
+    }
+    if (!fragments_.empty()) {
+        make_records();
+        point_pixel_.clear();
+        point_ordinal_.clear();
+        for (const Fragment& f : fragments_) {
+            point_pixel_.push_back(f.pixel);
+            point_ordinal_.push_back(f.ordinal);
+        }
+        shade_list(centre);
+        for (std::size_t i = 0; i < fragments_.size(); ++i) {  // the last one that is solid enough stays
+            if (!(point_color_[3][i] >= 0.5f)) continue;
+            ordinal_[fragments_[i].pixel] = fragments_[i].ordinal;
+            depth_[fragments_[i].pixel] = fragments_[i].depth;
+        }
+    }
+    if (!task_->targets.colors())
+        for (const std::uint32_t o : ordinal_) pixels_covered += o != 0;
+    LabelJob job{};
+    job.projection = task_->frame.projection;
+    job.side = side_;
+    job.width = width_;
+    job.height = height_;
+    job.depth = depth_.data();
+    job.ordinal = ordinal_.data();
+    job.triangles = triangles_.data();
+    job.instances = task_->frame.instances.data();
+    job.stride = static_cast<std::size_t>(task_->frame.projection.width);
+    const std::size_t first = picture_place(0);
+    job.distance = task_->targets.distance ? task_->targets.distance + first : nullptr;
+    job.triangle = task_->targets.triangle ? task_->targets.triangle + first : nullptr;
+    task_->kernels.label(job);
+}
+
+void Tile::inspect() {
+    const RasterInspection& out = task_->settings.inspection;
+    if (!out.bins && !out.overdraw && !out.floor) return;
+    for (std::uint32_t pixel = 0; pixel < depth_.size(); ++pixel) {
+        const TilePixel p(pixel, side_);
+        if (p.x >= width_ || p.y >= height_) continue;
+        const std::size_t place = picture_place(pixel);
+        if (out.bins) out.bins[place] = triangle_count_;
+        if (out.overdraw) out.overdraw[place] = overdraw_[pixel];
+        if (out.floor) out.floor[place] = triangle_count_ ? floor_[pixel / kBlockPixels] : 0.0f;
+    }
+}
+
+void Tile::fill_background() {
+    for (std::vector<float>& plane : sum_) std::fill(plane.begin(), plane.end(), 0.0f);
+    std::fill(hit_.begin(), hit_.end(), 0);
+    develop();
+}
+
 void Tile::develop() {
-    const auto picture_width = static_cast<std::size_t>(frame_.projection.width);
-    const float weight = 1.0f / static_cast<float>(settings_.samples.size());
-    for (int y = 0; y < height_; ++y) {
-        const std::size_t row = static_cast<std::size_t>(y * kTileSide);
-        const std::size_t out = static_cast<std::size_t>(y0_ + y) * picture_width + static_cast<std::size_t>(x0_);
-        const DevelopJob job{settings_.film,
-                             weight,
-                             static_cast<std::uint32_t>(width_),
-                             sum_[0].data() + row,
-                             sum_[1].data() + row,
-                             sum_[2].data() + row,
-                             sum_[3].data() + row,
-                             targets_.rgba + 4 * out};
-        kernels_.develop(job);
-        for (std::size_t x = 0; x < static_cast<std::size_t>(width_); ++x) {
-            pixels_covered += hit_[row + x] != 0;
-            if (!targets_.linear) continue;
-            for (std::size_t c = 0; c < 4; ++c) {
-                const float v = sum_[c][row + x] * weight;
-                targets_.linear[4 * (out + x) + c] = v == v ? v : 0.0f;
-            }
+    for (const std::uint64_t block : hit_) pixels_covered += static_cast<std::uint64_t>(std::popcount(block));
+    const std::size_t picture_width = static_cast<std::size_t>(task_->frame.projection.width);
+    const float weight = 1.0f / static_cast<float>(task_->settings.samples.size());
+    if (task_->targets.rgba) {
+        DevelopJob job{};
+        job.film = task_->settings.film;
+        job.weight = weight;
+        job.side = side_;
+        job.width = width_;
+        job.height = height_;
+        job.r = sum_[0].data();
+        job.g = sum_[1].data();
+        job.b = sum_[2].data();
+        job.alpha = sum_[3].data();
+        job.rgba = task_->targets.rgba + 4 * picture_place(0);
+        job.stride = 4 * picture_width;
+        task_->kernels.develop(job);
+    }
+    if (!task_->targets.linear) return;
+    for (std::uint32_t pixel = 0; pixel < depth_.size(); ++pixel) {
+        const TilePixel p(pixel, side_);
+        if (p.x >= width_ || p.y >= height_) continue;
+        float* out = task_->targets.linear + 4 * picture_place(pixel);
+        for (std::size_t c = 0; c < 4; ++c) {
+            const float v = sum_[c][pixel] * weight;
+            out[c] = v == v ? v : 0.0f;
         }
     }
 }

@@ -1,66 +1,85 @@
-// One tile from binned triangles to pixels: for every sample visibility, shading in batches by
-// instance, transparency from far to near; then the film. A Tile is scratch memory that one task at a
-// time uses, and is used again for other tiles.
+// One tile from binned triangles to pixels: for every sample visibility, surface records of what is
+// seen, shading in batches, transparency from far to near; then the film. A Tile is scratch memory
+// that one task at a time uses, and is used again for other tiles and frames.
 #pragma once
 
 #include "raster/engine.h"
 
+#include <array>
 #include <vector>
 
 namespace tessera {
 
+// What the tiles of a frame share.
+struct TileTask {
+    TileTask(const Frame& frame, const ShadingContext& shading, const RasterSettings& settings,
+             const RasterTargets& targets, const TileGrid& grid, const FrontEnd& front);
+
+    const Frame& frame;
+    const ShadingContext& shading;
+    const RasterSettings& settings;
+    const RasterTargets& targets;
+    const TileGrid& grid;
+    const FrontEnd& front;
+    const RasterKernels& kernels;
+    const SurfaceSource source;
+    // By instance: which instances may share a batch (equal numbers: equal material and layout).
+    std::vector<std::uint32_t> batch_of;
+    std::vector<SurfaceLayout> layouts;
+};
+
 class Tile {
   public:
-    Tile(const Frame& frame, const ShadingContext& shading, const RasterSettings& settings,
-         const RasterTargets& targets, const FrontEndResult& front);
+    Tile();
 
     // Draws tile `index` of the grid.
-    void draw(const TileGrid& grid, int index);
+    void draw(const TileTask& task, int index);
 
-    std::uint64_t fragments_passed = 0, pixels_covered = 0;
+    TileCounters counters;
+    std::uint64_t pixels_covered = 0;
+    void reset_counters() { counters = {}, pixels_covered = 0; }
 
   private:
     struct Fragment {
         std::uint32_t pixel, ordinal;
         float depth;
     };
-    // Surface points to shade, in the order in which they were asked for, and their colours.
-    struct Points {
-        std::vector<std::uint32_t> ordinal;
-        std::vector<std::int32_t> x, y;
-        std::vector<float> r, g, b, alpha, distance;
-        void clear() { ordinal.clear(), x.clear(), y.clear(); }
-    };
+    using Planes = std::array<std::vector<float>, 4>;  // red, green, blue, alpha by pixel
 
-    void gather_records(int tile);
+    void clear_depth();
     void find_visible(SamplePosition offset);
     void sort_fragments();
-    void shade_visible(SamplePosition offset);
-    void shade_points();
-    void add_sample();
-    void label();
+    void make_records();
+    void take_sample(SamplePosition offset, bool first);
+    void shade_opaque(SamplePosition offset, bool first, Planes& planes);
+    void shade_list(SamplePosition offset);
+    void compose_fragments(SamplePosition offset);
+    void label(bool seen);
+    void inspect();
     void develop();
+    void fill_background();
     std::uint32_t number(std::uint32_t ordinal) const;
+    std::size_t picture_place(std::uint32_t pixel) const;
+    ShadeJob shade_job(std::uint32_t instance) const;
     static void add_fragment(void* owner, std::uint32_t pixel, std::uint32_t ordinal, float depth);
 
-    const Frame& frame_;
-    const ShadingContext& shading_;
-    const RasterSettings& settings_;
-    const RasterTargets& targets_;
-    const FrontEndResult& front_;
-    const RasterKernels& kernels_;
-
-    int x0_ = 0, y0_ = 0, width_ = 0, height_ = 0;  // of the tile, in pixels of the picture
-    std::vector<const TriangleRecord*> records_;
-    std::vector<float> depth_;
-    std::vector<std::uint32_t> ordinal_;
+    const TileTask* task_ = nullptr;
+    int side_ = 0, x0_ = 0, y0_ = 0, width_ = 0, height_ = 0;  // width and height: within the picture
+    std::uint32_t triangle_count_ = 0;
+    std::vector<TileBin> bins_;
+    std::vector<float> depth_, floor_;
+    std::vector<std::uint32_t> ordinal_, overdraw_;
+    std::vector<std::uint64_t> hit_;
     std::vector<Fragment> fragments_;
-    Points points_;
-    std::vector<std::uint32_t> order_;  // of points, by instance
-    std::vector<std::int32_t> batch_x_, batch_y_, batch_triangle_;
-    std::vector<float> batch_orientation_, batch_[5];
-    std::vector<float> sum_[4];  // of the samples: premultiplied RGB, alpha
-    std::vector<char> hit_;
+    Buffer<TileTriangle> triangles_;
+    Buffer<std::uint8_t> seen_;
+    Buffer<std::uint32_t> visible_, record_of_, batch_;
+    Buffer<float> records_;
+    Planes sum_, sample_;
+    // Points of shade_list: the request, and the answer.
+    std::vector<std::uint32_t> point_pixel_, point_ordinal_, order_, batch_ordinal_;
+    std::vector<std::int32_t> batch_x_, batch_y_;
+    std::array<std::vector<float>, 4> batch_color_, point_color_;
 };
 
 }  // namespace tessera

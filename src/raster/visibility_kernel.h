@@ -1,38 +1,41 @@
-// Fills a tile: edge functions in exact integers, the depth test, cut-outs, transparent fragments.
-// Part of the kernel file, once per instruction set.
+// Fills a tile: masks of small triangles pixel by pixel; large ones by blocks of 8x8, after hierarchical
+// Z and the edges have said which blocks there are. Part of the kernel file, once per instruction set.
 #pragma once
 
-#include "raster/shade_kernel.h"
+#include "raster/surface_kernel.h"
 
 namespace tessera::TESSERA_ISA_NAMESPACE {
 
+// How a block of 8x8 pixels falls into vectors, row after row: kRows rows in a vector, or kPerRow
+// vectors in a row.
+inline constexpr int kRows = kLanes<Float> > kBlockSide ? kLanes<Float> / kBlockSide : 1;
+inline constexpr int kPerRow = kLanes<Float> < kBlockSide ? kBlockSide / kLanes<Float> : 1;
+TESSERA_INLINE Int lane_column() { return iota<Int>() & Int(kBlockSide - 1); }
+TESSERA_INLINE Int lane_row() { return iota<Int>() >> 3; }
+
 // An edge over the samples of a tile. With vertices in 24.8 every sample of a pixel grid has the same
 // sub-pixel part, so E / 256, rounded down, steps by whole a and b per pixel and keeps the sign of E:
-// 64 bits once per tile, 32 bits per sample.
+// 64 bits once per tile, 32 bits per sample (vertices lie in the guard band, tiles are 128 pixels at
+// most, and 64 in pictures wider or higher than 8192).
 struct TileEdge {
-    std::int64_t start, a, b;  // at the tile's first sample; per pixel to the right and down
+    std::int32_t e, a, b;  // at the tile's first sample; per pixel to the right and down
 
-    TESSERA_INLINE TileEdge(SnappedVertex from, SnappedVertex to, std::int64_t x, std::int64_t y) {
+    // False where the tile lies outside. An edge that the tile lies inside of becomes zero.
+    TESSERA_INLINE bool set(SnappedVertex from, SnappedVertex to, std::int64_t x, std::int64_t y, int side) {
         const std::int64_t dx = static_cast<std::int64_t>(to.x) - from.x, dy = static_cast<std::int64_t>(to.y) - from.y;
-        a = -dy;
-        b = dx;
         const bool top_left = dy < 0 || (dy == 0 && dx > 0);
-        start = (b * (y - from.y) + a * (x - from.x) - (top_left ? 0 : 1)) >> 8;
+        const std::int64_t start = (dx * (y - from.y) - dy * (x - from.x) - (top_left ? 0 : 1)) >> 8;
+        const std::int64_t reach = side - 1;
+        const std::int64_t most = start + reach * ((dy < 0 ? -dy : 0) + (dx > 0 ? dx : 0));
+        const std::int64_t least = start + reach * ((dy > 0 ? -dy : 0) + (dx < 0 ? dx : 0));
+        if (most < 0) return false;
+        const bool crosses = least < 0;
+        e = crosses ? static_cast<std::int32_t>(start) : 0;
+        a = crosses ? static_cast<std::int32_t>(-dy) : 0;
+        b = crosses ? static_cast<std::int32_t>(dx) : 0;
+        return true;
     }
-    // The extremes over the tile's samples: outside everywhere, or inside everywhere.
-    TESSERA_INLINE std::int64_t most() const { return start + (kTileSide - 1) * ((a > 0 ? a : 0) + (b > 0 ? b : 0)); }
-    TESSERA_INLINE std::int64_t least() const { return start + (kTileSide - 1) * ((a < 0 ? a : 0) + (b < 0 ? b : 0)); }
 };
-
-// First and last pixel of a tile (0 .. kTileSide - 1) whose sample lies between two coordinates.
-TESSERA_INLINE std::int32_t first_pixel(std::int32_t low, std::int32_t offset, int origin) {
-    const std::int32_t p = ((low - offset + 255) >> 8) - origin;
-    return p < 0 ? 0 : p;
-}
-TESSERA_INLINE std::int32_t last_pixel(std::int32_t high, std::int32_t offset, int origin, int pixels) {
-    const std::int32_t p = ((high - offset) >> 8) - origin;
-    return p > pixels - 1 ? pixels - 1 : p;
-}
 
 TESSERA_INLINE std::int32_t least_of(std::int32_t a, std::int32_t b, std::int32_t c) {
     const std::int32_t m = a < b ? a : b;
@@ -43,75 +46,267 @@ TESSERA_INLINE std::int32_t most_of(std::int32_t a, std::int32_t b, std::int32_t
     return m > c ? m : c;
 }
 
-// Alpha of one triangle's material at the samples of a row.
-inline Float alpha_of(const VisibilityJob& job, const TriangleRecord& r, Int x, Int y) {
-    const InstanceView& instance = job.instances[r.instance];
-    const SurfacePoint<Float> s = gather_surface(
-        instance, *job.shading, job.projection, Int(static_cast<std::int32_t>(r.triangle)), Float(r.orientation), x, y);
-    return base_color(job.shading->materials[instance.material], s).w;
+// The nearest depth of a plane over a span of samples. The plane's formula rounds monotonically, so
+// the value at the corner is a bound, exactly.
+TESSERA_INLINE Float nearest_over(const DepthPlane<float>& p, Int x, Int y, std::int32_t span) {
+    const Float dx = to_float(x + Int((p.ddx > 0.0f ? span : 0) - p.anchor_x));
+    const Float dy = to_float(y + Int((p.ddy > 0.0f ? span : 0) - p.anchor_y));
+    const Float plane = (Float(p.depth) + Float(p.ddy) * dy) + Float(p.ddx) * dx;
+    return min(max(plane, Float(p.lowest)), Float(p.highest));
 }
 
-inline void fill(VisibilityJob& job, std::uint32_t ordinal) {
-    constexpr int kWidth = kLanes<Float>;
-    const TriangleRecord& r = *job.records[ordinal - 1];
-    const std::int32_t x0 = 256 * job.x0 + job.offset.x, y0 = 256 * job.y0 + job.offset.y;
-    TileEdge edges[3] = {{r.v[1], r.v[2], x0, y0}, {r.v[2], r.v[0], x0, y0}, {r.v[0], r.v[1], x0, y0}};
-    for (TileEdge& e : edges) {
-        if (e.most() < 0) return;
-        // Inside all over the tile: nothing to step, nothing to overflow.
-        if (e.least() >= 0) e.start = e.a = e.b = 0;
+// The lowest of the floors.
+inline float tile_floor(const VisibilityJob& job) {
+    const int blocks = job.side / kBlockSide * (job.side / kBlockSide);
+    Float low = load<Float>(job.floor);
+    for (int i = kLanes<Float>; i < blocks; i += kLanes<Float>) low = min(low, load<Float>(job.floor + i));
+    return least_lane(low);
+}
+
+// A large triangle in a tile.
+struct LargeFill {
+    const LargeTriangle& t;
+    std::uint32_t ordinal;
+    TileEdge edges[3];
+    std::int32_t x0, y0;  // the tile's first sample, 1/256 pixel
+};
+
+enum class FillKind { kOpaque, kCutOut, kBlend };
+
+// One block: `inside` says that no edge needs a look.
+template <FillKind kKind>
+TESSERA_INLINE void fill_block(VisibilityJob& job, const LargeFill& f, int block_x, int block_y, bool inside,
+                               const float* record, const SurfaceLayout* layout) {
+    const int block = block_y * (job.side / kBlockSide) + block_x;
+    const std::int32_t px = block_x * kBlockSide, py = block_y * kBlockSide;
+    float* const depth = job.depth + block * kBlockPixels;
+    std::uint32_t* const ordinal = job.ordinal + block * kBlockPixels;
+    const DepthPlane<float>& plane = f.t.depth;
+    const Int columns = lane_column(), rows = lane_row();
+    const Float lowest(plane.lowest), highest(plane.highest), ddy(plane.ddy), at_anchor(plane.depth);
+    Float x_part[kPerRow];
+    Int e[3][kPerRow], step[3];
+    for (int j = 0; j < kPerRow; ++j) {
+        const Int column = columns + Int(px + j * kLanes<Float>);
+        x_part[j] = Float(plane.ddx) * to_float((column << 8) + Int(f.x0 - plane.anchor_x));
+        if (inside) continue;
+        for (int k = 0; k < 3; ++k)
+            e[k][j] = Int(f.edges[k].e) + Int(f.edges[k].a) * column + Int(f.edges[k].b) * (rows + Int(py));
     }
-    const std::int32_t xl = first_pixel(least_of(r.v[0].x, r.v[1].x, r.v[2].x), job.offset.x, job.x0);
-    const std::int32_t xr = last_pixel(most_of(r.v[0].x, r.v[1].x, r.v[2].x), job.offset.x, job.x0, job.width);
-    const std::int32_t yt = first_pixel(least_of(r.v[0].y, r.v[1].y, r.v[2].y), job.offset.y, job.y0);
-    const std::int32_t yb = last_pixel(most_of(r.v[0].y, r.v[1].y, r.v[2].y), job.offset.y, job.y0, job.height);
-    const MaterialView& material = job.shading->materials[job.instances[r.instance].material];
-    const Int lanes = iota<Int>();
-    const Int a0(static_cast<std::int32_t>(edges[0].a)), a1(static_cast<std::int32_t>(edges[1].a)),
-        a2(static_cast<std::int32_t>(edges[2].a));
-    for (std::int32_t y = yt; y <= yb; ++y) {
-        const auto row = [&](const TileEdge& e) { return Int(static_cast<std::int32_t>(e.start + e.b * y)); };
-        const Int row0 = row(edges[0]), row1 = row(edges[1]), row2 = row(edges[2]);
-        const Float z_row =
-            Float(r.depth.depth) + Float(r.depth.ddy) * Float(static_cast<float>(y0 + 256 * y - r.depth.anchor_y));
-        for (std::int32_t x = xl & -kWidth; x <= xr; x += kWidth) {
-            const Int column = lanes + Int(x);
-            const Mask in_picture = column < Int(job.width);
-            const Mask inside =
-                in_picture & (((row0 + a0 * column) | (row1 + a1 * column) | (row2 + a2 * column)) > Int(-1));
-            if (none(inside)) continue;
-            const Int sample_x = Int(x0) + column * Int(256);
-            const Float plane = z_row + Float(r.depth.ddx) * to_float(sample_x - Int(r.depth.anchor_x));
-            const Float z = min(max(plane, Float(r.depth.lowest)), Float(r.depth.highest));
-            float* depth = job.depth + y * kTileSide + x;
-            const Float before = load<Float>(depth);
-            Mask pass = inside & (z > before);
-            if (material.alpha_mode == AlphaMode::kBlend) {
-                // Kept where it may end up in front; the final depth decides.
-                const std::uint32_t seen = mask_bits(inside & (z >= before) & (z > Float(0.0f)));
-                alignas(64) float values[kWidth];
-                store(values, z);
-                for (std::uint32_t bits = seen; bits; bits &= bits - 1) {
-                    const int i = __builtin_ctz(bits);
-                    job.add_fragment(job.owner, static_cast<std::uint32_t>(y * kTileSide + x + i), ordinal, values[i]);
+    for (int k = 0; k < 3; ++k) step[k] = Int(f.edges[k].b * kRows);
+    Float low(3.4e38f);
+    Int y = ((rows + Int(py)) << 8) + Int(f.y0 - plane.anchor_y);
+    for (int row = 0; row < kBlockSide; row += kRows) {
+        const Float row_part = at_anchor + ddy * to_float(y);
+        for (int j = 0; j < kPerRow; ++j) {
+            const int at = row * kBlockSide + j * kLanes<Float>;
+            const Float before = load<Float>(depth + at);
+            const Float z = min(max(row_part + x_part[j], lowest), highest);
+            Mask covered(true);
+            if (!inside) {
+                covered = or3(e[0][j], e[1][j], e[2][j]) > Int(-1);
+                for (int k = 0; k < 3; ++k) e[k][j] += step[k];
+            }
+            if (job.count) {
+                const Mask counted = covered & (before < Float(3.4e38f));
+                job.counters.samples_covered += static_cast<std::uint64_t>(__builtin_popcount(mask_bits(counted)));
+                if (job.overdraw) {
+                    std::uint32_t* tested = job.overdraw + block * kBlockPixels + at;
+                    store(tested, load<Uint>(tested) + select(counted, Uint(1u), Uint(0u)));
                 }
-                continue;
             }
-            if (none(pass)) continue;
-            if (material.alpha_mode == AlphaMode::kMask) {
-                const Float alpha = alpha_of(job, r, sample_x, Int(y0 + 256 * y));
-                pass &= !(alpha < Float(material.alpha_cutoff));
+            if constexpr (kKind == FillKind::kBlend) {
+                // Kept where it may end up in front; the final depth decides.
+                alignas(64) float values[kLanes<Float>];
+                store(values, z);
+                std::uint32_t seen = mask_bits(covered & (z >= before) & (z > Float(0.0f)));
+                for (; seen; seen &= seen - 1) {
+                    const int i = __builtin_ctz(seen);
+                    job.add_fragment(job.owner, static_cast<std::uint32_t>(block * kBlockPixels + at + i), f.ordinal,
+                                     values[i]);
+                }
+            } else {
+                Mask pass = covered & (z > before);
+                if constexpr (kKind == FillKind::kCutOut) {
+                    if (any(pass)) {
+                        const Int column = columns + Int(px + j * kLanes<Float>);
+                        const Float sx = to_float((column << 8) + Int(f.x0));
+                        const Float sy = to_float(((rows + Int(py + row)) << 8) + Int(f.y0));
+                        pass &= !cut_out(*job.source, f.t.instance, *layout, record, sx, sy);
+                    }
+                }
+                store_masked(depth + at, pass, z);
+                store_masked(ordinal + at, pass, Uint(f.ordinal));
+                low = min(low, select(pass, z, before));
+                if (job.count)
+                    job.counters.fragments_passed += static_cast<std::uint64_t>(__builtin_popcount(mask_bits(pass)));
             }
-            store_masked(depth, pass, z);
-            store_masked(job.ordinal + y * kTileSide + x, pass, Uint(ordinal));
-            job.fragments_passed += static_cast<std::uint64_t>(__builtin_popcount(mask_bits(pass)));
+        }
+        y += Int(kRows * 256);
+    }
+    if (kKind != FillKind::kBlend && job.hierarchical_z) job.floor[block] = least_lane(low);
+}
+
+// Classifies as many blocks at a time as there are lanes, then fills those that are left.
+template <FillKind kKind>
+TESSERA_INLINE void fill_blocks(VisibilityJob& job, const LargeFill& f, const float* record,
+                                const SurfaceLayout* layout) {
+    constexpr int kWidth = kLanes<Float>;
+    const int blocks = job.side / kBlockSide, shift = __builtin_ctz(static_cast<unsigned>(blocks));
+    const SnappedVertex* v = f.t.v;
+    const auto block_of = [&](std::int32_t at) {
+        const std::int32_t b = at >> 11;  // 8 pixels of 256
+        return b < 0 ? 0 : b > blocks - 1 ? blocks - 1 : b;
+    };
+    const std::int32_t x = 256 * job.x0, y = 256 * job.y0;
+    const int left = block_of(least_of(v[0].x, v[1].x, v[2].x) - x), top = block_of(least_of(v[0].y, v[1].y, v[2].y) - y);
+    const int right = block_of(most_of(v[0].x, v[1].x, v[2].x) - x),
+              bottom = block_of(most_of(v[0].y, v[1].y, v[2].y) - y);
+    constexpr std::int32_t kReach = kBlockSide - 1;
+    Int most[3], least[3];
+    for (int k = 0; k < 3; ++k) {
+        const std::int32_t a = f.edges[k].a * kReach, b = f.edges[k].b * kReach;
+        most[k] = Int(f.edges[k].e + (a > 0 ? a : 0) + (b > 0 ? b : 0));
+        least[k] = Int((a < 0 ? a : 0) + (b < 0 ? b : 0)) - Int((a > 0 ? a : 0) + (b > 0 ? b : 0));
+    }
+    for (int group = (top << shift) & -kWidth; group < (bottom + 1) << shift; group += kWidth) {
+        const Int index = iota<Int>() + Int(group);
+        const Int bx = index & Int(blocks - 1), by = index >> shift;
+        const Int px = bx << 3, py = by << 3;
+        Mask todo = !((bx < Int(left)) | (bx > Int(right)) | (by < Int(top)) | (by > Int(bottom)));
+        Mask inside(true);
+        for (int k = 0; k < 3; ++k) {
+            const Int e = most[k] + Int(f.edges[k].a) * px + Int(f.edges[k].b) * py;
+            todo &= e > Int(-1);
+            inside &= e + least[k] > Int(-1);
+        }
+        std::uint32_t rest = mask_bits(todo);
+        if (!rest) continue;
+        if (job.hierarchical_z) {
+            const Float nearest = nearest_over(f.t.depth, (px << 8) + Int(f.x0), (py << 8) + Int(f.y0), kReach * 256);
+            const Float floor = load<Float>(job.floor + group);
+            // A transparent fragment at equal depth may still be in front.
+            const Mask hidden = kKind == FillKind::kBlend ? nearest < floor : nearest <= floor;
+            const std::uint32_t shown = rest & ~mask_bits(hidden);
+            job.counters.blocks_hidden += static_cast<std::uint64_t>(__builtin_popcount(rest ^ shown));
+            rest = shown;
+        }
+        job.counters.blocks_drawn += static_cast<std::uint64_t>(__builtin_popcount(rest));
+        const std::uint32_t full = mask_bits(inside);
+        for (; rest; rest &= rest - 1) {
+            const int i = __builtin_ctz(rest), block = group + i;
+            if (full >> i & 1)
+                fill_block<kKind>(job, f, block & (blocks - 1), block >> shift, true, record, layout);
+            else
+                fill_block<kKind>(job, f, block & (blocks - 1), block >> shift, false, record, layout);
+        }
+    }
+}
+
+// Cut-outs and transparent triangles: the rare kinds pay for themselves.
+template <FillKind kKind>
+__attribute__((noinline)) void fill_special(VisibilityJob& job, const LargeFill& f) {
+    alignas(64) float record[kMaxSurfaceFloats * kMaxLanes];
+    SurfaceLayout layout;
+    if (kKind == FillKind::kCutOut) {
+        const InstanceView& instance = job.source->instances[f.t.instance];
+        layout = layout_of(*job.source, instance);
+        make_surfaces({job.source, &instance, layout, &f.t.triangle, 1, record});
+    }
+    fill_blocks<kKind>(job, f, record, &layout);
+}
+
+TESSERA_INLINE void fill_large(VisibilityJob& job, const LargeTriangle& t, std::uint32_t ordinal) {
+    LargeFill f{t, ordinal, {}, 256 * job.x0 + job.offset.x, 256 * job.y0 + job.offset.y};
+    for (int k = 0; k < 3; ++k)
+        if (!f.edges[k].set(t.v[k], t.v[k == 2 ? 0 : k + 1], f.x0, f.y0, job.side)) return;
+    const MaterialView& material = job.source->shading->materials[job.source->instances[t.instance].material];
+    switch (material.alpha_mode) {
+        case AlphaMode::kOpaque:
+            return fill_blocks<FillKind::kOpaque>(job, f, nullptr, nullptr);
+        case AlphaMode::kMask:
+            return fill_special<FillKind::kCutOut>(job, f);
+        case AlphaMode::kBlend:
+            return fill_special<FillKind::kBlend>(job, f);
+    }
+}
+
+// Where pixel (x, y) of a tile lies: column_place(x) + row_place(y).
+TESSERA_INLINE std::int32_t column_place(std::int32_t x) { return (x & -kBlockSide) << 3 | (x & (kBlockSide - 1)); }
+TESSERA_INLINE std::int32_t row_place(std::int32_t y, int side) {
+    return (y & -kBlockSide) * side + ((y & (kBlockSide - 1)) << 3);
+}
+
+TESSERA_INLINE void fill_small(VisibilityJob& job, const SmallTriangle& t, std::uint32_t ordinal) {
+    const std::int32_t picture_x = static_cast<std::int32_t>(t.position & 0xffffu),
+                       picture_y = static_cast<std::int32_t>(t.position >> 16);
+    const std::int32_t x = picture_x - job.x0, y = picture_y - job.y0;
+    std::uint64_t mask = t.rows[0] | static_cast<std::uint64_t>(t.rows[1]) << 32;
+    const std::int32_t inner = job.side - kBlockSide;
+    if ((x < 0) | (y < 0) | (x > inner) | (y > inner)) {  // it lies in other tiles too
+        std::uint64_t columns = 0xff;
+        if (x < 0) columns = columns << -x & 0xff;
+        if (x > inner) columns >>= x - inner;
+        mask &= columns * 0x0101010101010101u;
+        if (y < 0) mask &= ~std::uint64_t{0} << (kBlockSide * -y);
+        if (y > inner) mask &= ~std::uint64_t{0} >> (kBlockSide * (y - inner));
+    }
+    const DepthPlane<float>& p = t.depth;
+    const std::int32_t dx = 256 * picture_x + job.offset.x - p.anchor_x,
+                       dy = 256 * picture_y + job.offset.y - p.anchor_y;
+    for (; mask; mask &= mask - 1) {
+        const int bit = __builtin_ctzll(mask), column = bit & 7, row = bit >> 3;
+        const std::int32_t at = column_place(x + column) + row_place(y + row, job.side);
+        const float plane = (p.depth + p.ddy * static_cast<float>(dy + 256 * row)) +
+                            p.ddx * static_cast<float>(dx + 256 * column);
+        const float z = min(max(plane, p.lowest), p.highest);
+        const float before = job.depth[at];
+        const bool pass = z > before;
+        job.depth[at] = pass ? z : before;
+        job.ordinal[at] = pass ? ordinal : job.ordinal[at];
+        if (job.count) {
+            const bool counted = before < 3.4e38f;
+            job.counters.samples_covered += counted;
+            job.counters.fragments_passed += pass;
+            if (job.overdraw) job.overdraw[at] += counted;
         }
     }
 }
 
 inline void visibility(VisibilityJob& job) {
-    job.fragments_passed = 0;
-    for (std::uint32_t i = 1; i <= job.record_count; ++i) fill(job, i);
+    job.counters = {};
+    std::uint32_t ordinal = 0;
+    float floor = 0;
+    std::uint64_t drawn = 0;
+    for (std::uint32_t b = 0; b < job.bin_count; ++b) {
+        const TileBin& bin = job.bins[b];
+        for (std::uint32_t r = 0; r < bin.run_count; ++r) {
+            const BinRun run = bin.runs[r];
+            if (!run.large()) {
+                const SmallTriangle* t = bin.small + run.first;
+                for (const SmallTriangle* const end = t + run.count; t != end; ++t) {
+                    job.triangles[ordinal++] = {t->triangle, t->instance};
+                    fill_small(job, *t, ordinal);
+                }
+                continue;
+            }
+            const LargeTriangle* t = bin.large + run.first;
+            for (const LargeTriangle* const end = t + run.size(); t != end; ++t) {
+                job.triangles[ordinal++] = {t->triangle, t->instance};
+                if (job.hierarchical_z) {
+                    if (drawn != job.counters.blocks_drawn) {
+                        drawn = job.counters.blocks_drawn;
+                        floor = tile_floor(job);
+                    }
+                    if (t->depth.highest < floor) {
+                        ++job.counters.blocks_hidden;
+                        continue;
+                    }
+                }
+                fill_large(job, *t, ordinal);
+            }
+        }
+    }
 }
 
 }  // namespace tessera::TESSERA_ISA_NAMESPACE

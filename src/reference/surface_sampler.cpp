@@ -1,28 +1,6 @@
 #include "reference/surface_sampler.h"
 
 namespace tessera {
-namespace {
-
-Corner<float> fetch_corner(const MeshView& mesh, std::uint32_t vertex) {
-    const std::size_t v = vertex;
-    Corner<float> c{};
-    c.position = Vec3T<float>::load(mesh.positions + 3 * v);
-    c.normal = Vec3T<float>::load(mesh.normals + 3 * v);
-    if (mesh.tangents) {
-        const float* t = mesh.tangents + 4 * v;
-        c.tangent = {t[0], t[1], t[2], t[3]};
-    }
-    if (mesh.colors) {
-        const float* k = mesh.colors + 4 * v;
-        c.color = {k[0], k[1], k[2], k[3]};
-    }
-    for (int i = 0; i < kMaxUvSets; ++i)
-        if (mesh.uvs[i]) c.uv[i] = {mesh.uvs[i][2 * v], mesh.uvs[i][2 * v + 1]};
-    return c;
-}
-
-}  // namespace
-
 void SurfaceSampler::select(std::uint32_t triangle) {
     if (triangle == selected_) return;
     instance_ = &frame_.instance_of(triangle);
@@ -45,27 +23,42 @@ float SurfaceSampler::depth(std::uint32_t triangle, SamplePosition at) {
     return setup_.depth.at(at.x, at.y);
 }
 
-SurfacePoint<float> SurfaceSampler::point(std::uint32_t triangle, SamplePosition at) {
+void SurfaceSampler::fetch_planes(std::uint32_t triangle) {
     select(triangle);
-    const ProjectionView& picture = frame_.projection;
-    const Vec2T<float> ndc = sample_ndc<float>(at.x, at.y, picture.width, picture.height);
-    return point(triangle, barycentrics(setup_.vertices, ndc, setup_.orientation, picture.width, picture.height));
+    if (planes_of_ == triangle) return;
+    const std::uint32_t index = triangle - instance_->first_triangle;
+    layout_ = surface_layout(instance_->mesh, material(triangle), frame_.projection.orthographic);
+    make_surface_record(*instance_, index, setup_, frame_.projection, layout_, record_);
+    const Corner<float> c[3] = {corner(index, 0), corner(index, 1), corner(index, 2)};
+    geometric_normal_ = geometric_normal(*instance_, c[0].position, c[1].position, c[2].position);
+    planes_of_ = triangle;
 }
 
-SurfacePoint<float> SurfaceSampler::point(std::uint32_t triangle, const Barycentrics<float>& b) {
-    if (corners_of_ != triangle) {
-        const std::uint32_t* v = instance_->mesh.triangles + 3 * std::size_t{triangle - instance_->first_triangle};
-        for (int i = 0; i < 3; ++i) corners_[i] = fetch_corner(instance_->mesh, v[i]);
-        corners_of_ = triangle;
-    }
-    return surface_point(*instance_, corners_, b, setup_.front(*instance_) ? 1.0f : -1.0f, context_.footprint_scale);
+Corner<float> SurfaceSampler::corner(std::uint32_t index, int i) const {
+    return fetch_corner(instance_->mesh,
+                        instance_->mesh.triangles[3 * std::size_t{index} + static_cast<std::size_t>(i)]);
+}
+
+SurfacePoint<float> SurfaceSampler::point(std::uint32_t triangle, SamplePosition at) {
+    fetch_planes(triangle);
+    const float x = static_cast<float>(at.x), y = static_cast<float>(at.y), side = record_[2];
+    SurfaceSample<float> sample;
+    sample_planes(layout_, x, y, [this](int i) { return record_[i]; }, sample);
+    SurfacePoint<float> s =
+        surface_point(layout_, rays_, sample, x, y, side, record_[3], context_.footprint_scale);
+    s.geometric_normal = geometric_normal_ * side;
+    return s;
 }
 
 float SurfaceSampler::alpha(std::uint32_t triangle, const double (&barycentric)[3]) {
     select(triangle);
+    const std::uint32_t index = triangle - instance_->first_triangle;
+    const Corner<float> corners[3] = {corner(index, 0), corner(index, 1), corner(index, 2)};
     Barycentrics<float> b{};
     for (int i = 0; i < 3; ++i) b.b[i] = static_cast<float>(barycentric[i]);
-    return base_color(material(triangle), point(triangle, b)).w;
+    return base_color(material(triangle),
+                      surface_point(*instance_, corners, b, 1.0f, context_.footprint_scale))
+        .w;
 }
 
 float SurfaceSampler::alpha(std::uint32_t triangle, SamplePosition at) {

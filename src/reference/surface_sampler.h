@@ -11,12 +11,16 @@ namespace tessera {
 class SurfaceSampler {
   public:
     // Both must outlive the sampler.
-    SurfaceSampler(const Frame& frame, const ShadingContext& context) : frame_(frame), context_(context) {}
+    SurfaceSampler(const Frame& frame, const ShadingContext& context) : frame_(frame), context_(context), rays_(frame.projection) {}
 
     // `triangle` is a number in the frame (0-based); `at` a position inside its picture.
     SurfacePoint<float> point(std::uint32_t triangle, SamplePosition at);
     // Canonical depth (reversed) of the triangle at a position.
     float depth(std::uint32_t triangle, SamplePosition at);
+    // Distance along the view axis there, from the canonical depth.
+    float distance(std::uint32_t triangle, SamplePosition at) {
+        return distance_of_depth(frame_.projection, depth(triangle, at));
+    }
     // Alpha of the material there, before the alpha mode looks at it.
     float alpha(std::uint32_t triangle, SamplePosition at);
     // The same for a ray's hit anywhere on the triangle, from the texture's finest level.
@@ -29,15 +33,19 @@ class SurfaceSampler {
 
   private:
     void select(std::uint32_t triangle);
-    SurfacePoint<float> point(std::uint32_t triangle, const Barycentrics<float>& b);
+    void fetch_planes(std::uint32_t triangle);
+    Corner<float> corner(std::uint32_t index, int i) const;
 
     const Frame& frame_;
     const ShadingContext& context_;
     static constexpr std::uint32_t kNothing = 0xffffffffu;
-    std::uint32_t selected_ = kNothing, corners_of_ = kNothing;
+    std::uint32_t selected_ = kNothing, planes_of_ = kNothing;
     const InstanceView* instance_ = nullptr;
+    PictureRays rays_;
     TriangleSetup setup_;
-    Corner<float> corners_[3];
+    SurfaceLayout layout_;  // of planes_of_, like what follows
+    float record_[kMaxSurfaceFloats];
+    Vec3T<float> geometric_normal_;
 };
 
 }  // namespace tessera

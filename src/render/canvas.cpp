@@ -9,63 +9,80 @@ namespace {
 // The one NaN that may be: a file with broken numbers gives the same bits everywhere.
 float without_nan(float value) { return value == value ? value : 0.0f; }
 
+// The plane's pixels, with the memory that it has when size and format are right; null when not wanted.
+template <class T>
+T* make_plane(bool wanted, const RenderOptions& options, PixelFormat format, Image& plane) {
+    const bool fits = plane.width() == options.width && plane.height() == options.height && plane.format() == format;
+    if (!wanted)
+        plane = {};
+    else if (plane.empty() || !fits)
+        plane = Image(options.width, options.height, format);
+    return wanted ? plane.data<T>() : nullptr;
+}
+
 }  // namespace
 
 Canvas::Canvas(const RenderOptions& options) : options_(options) {
     const auto pixels = static_cast<std::size_t>(options.width) * static_cast<std::size_t>(options.height);
-    sums_.assign(4 * pixels, 0.0f);
     hit_.assign(pixels, 0);
+    if (!options.want_color && !options.want_linear) return;
+    sums_.assign(4 * pixels, 0.0f);
     if (options.filter != PixelFilter::kBox) filter_.emplace(options, nullptr);
 }
 
-void Canvas::end_sample(int sample, const std::function<void(double)>& checkpoint) {
+void Canvas::take_sample(int sample, ReferenceEngine& engine, const Visibility& seen, SamplePosition offset,
+                         const std::function<void(double)>& checkpoint) {
+    const Fragment* transparent = seen.transparent.data();
+    const Fragment* const end = transparent + seen.transparent.size();
+    for (std::size_t pixel = 0; pixel < seen.depth.size(); ++pixel) {
+        if (pixel % static_cast<std::size_t>(seen.width) == 0)
+            checkpoint(static_cast<double>(pixel) / static_cast<double>(seen.depth.size()));
+        const Fragment* const first = transparent;
+        while (transparent != end && transparent->pixel == pixel) ++transparent;
+        if (seen.triangle[pixel] == 0 && first == transparent) continue;
+        hit_[pixel] = 1;
+        if (!sums_.empty()) add(pixel, engine.shade_sample(seen, pixel, offset, first, transparent));
+    }
     if (!filter_) return;
     for (float& value : sums_) value = without_nan(value);
     filter_->add(sample, sums_.data(), checkpoint);
     std::fill(sums_.begin(), sums_.end(), 0.0f);
 }
 
-void Canvas::develop(const FilmView& film, RenderResult& result) {
-    if (filter_) std::vector<float>().swap(sums_);  // the filter has its own
-    make_color_planes(options_, result);
+void Canvas::develop(const FilmView& film, const RasterTargets& targets, RenderStats& stats) {
     if (filter_) {
-        develop_picture(filter_->finish(), 1.0f, film, options_, nullptr, result);
-        result.stats.pixels_covered = filter_->pixels_covered();
+        develop_picture(filter_->finish(), 1.0f, film, options_, nullptr, targets);
+        stats.pixels_covered = filter_->pixels_covered();
         return;
     }
-    develop_picture(sums_.data(), 1.0f / static_cast<float>(options_.samples), film, options_, nullptr, result);
-    for (const char hit : hit_) result.stats.pixels_covered += hit != 0;
-}
-
-void make_color_planes(const RenderOptions& options, RenderResult& result) {
-    result.color = Image(options.width, options.height, PixelFormat::kRgba8);
-    if (options.want_linear) result.linear = Image(options.width, options.height, PixelFormat::kRgba32f);
+    for (const char hit : hit_) stats.pixels_covered += hit != 0;
+    if (!sums_.empty())
+        develop_picture(sums_.data(), 1.0f / static_cast<float>(options_.samples), film, options_, nullptr, targets);
 }
 
 void develop_picture(const float* sums, float weight, const FilmView& film, const RenderOptions& options, Arena* arena,
-                     RenderResult& result) {
-    auto* color = result.color.data<std::uint8_t>();
-    float* linear = options.want_linear ? result.linear.data<float>() : nullptr;
+                     const RasterTargets& targets) {
     for_each_row(options.height, arena, [&](int y) {
         const auto width = static_cast<std::size_t>(options.width), row = static_cast<std::size_t>(y) * width;
         for (std::size_t pixel = row; pixel < row + width; ++pixel) {
             const float* sum = sums + 4 * pixel;
             const Vec3T<float> mean{sum[0] * weight, sum[1] * weight, sum[2] * weight};
             const float alpha = sum[3] * weight;
-            const DisplayPixel<float> d = develop(film, mean, alpha);
-            color[4 * pixel + 0] = static_cast<std::uint8_t>(d.r);
-            color[4 * pixel + 1] = static_cast<std::uint8_t>(d.g);
-            color[4 * pixel + 2] = static_cast<std::uint8_t>(d.b);
-            color[4 * pixel + 3] = static_cast<std::uint8_t>(d.a);
-            if (!linear) continue;
+            if (targets.rgba) {
+                const DisplayPixel<float> d = develop(film, mean, alpha);
+                targets.rgba[4 * pixel + 0] = static_cast<std::uint8_t>(d.r);
+                targets.rgba[4 * pixel + 1] = static_cast<std::uint8_t>(d.g);
+                targets.rgba[4 * pixel + 2] = static_cast<std::uint8_t>(d.b);
+                targets.rgba[4 * pixel + 3] = static_cast<std::uint8_t>(d.a);
+            }
+            if (!targets.linear) continue;
             const float values[4] = {mean.x, mean.y, mean.z, alpha};
-            for (std::size_t i = 0; i < 4; ++i) linear[4 * pixel + i] = without_nan(values[i]);
+            for (std::size_t i = 0; i < 4; ++i) targets.linear[4 * pixel + i] = without_nan(values[i]);
         }
     });
 }
 
-void take_labels(ReferenceEngine& engine, const RunControl& control, const RenderOptions& options,
-                 RenderResult& result) {
+void take_labels(ReferenceEngine& engine, const RunControl& control, const RasterTargets& targets) {
     const SamplePosition centre{128, 128};
     const Visibility seen = engine.see(centre, control);
     std::vector<std::uint32_t> nearest = seen.triangle;
@@ -76,20 +93,14 @@ void take_labels(ReferenceEngine& engine, const RunControl& control, const Rende
                                 256 * static_cast<std::int32_t>(f.pixel / width) + centre.y};
         if (engine.sampler().alpha(f.triangle, at) >= 0.5f) nearest[f.pixel] = f.triangle + 1;
     }
-    if (options.want_primitive) {
-        result.primitive = Image(options.width, options.height, PixelFormat::kU32);
-        auto* out = result.primitive.data<std::uint32_t>();
-        for (std::size_t i = 0; i < nearest.size(); ++i) out[i] = nearest[i];
-    }
-    if (!options.want_depth) return;
-    result.depth = Image(options.width, options.height, PixelFormat::kF32);
-    float* out = result.depth.data<float>();
+    if (targets.triangle) std::copy(nearest.begin(), nearest.end(), targets.triangle);
+    if (!targets.distance) return;
     for (std::size_t i = 0; i < nearest.size(); ++i) {
         const auto width = static_cast<std::size_t>(seen.width);
         const SamplePosition at{256 * static_cast<std::int32_t>(i % width) + centre.x,
                                 256 * static_cast<std::int32_t>(i / width) + centre.y};
-        out[i] = nearest[i] == 0 ? std::numeric_limits<float>::infinity()
-                                 : -engine.sampler().point(nearest[i] - 1, at).position.z;
+        targets.distance[i] =
+            nearest[i] == 0 ? std::numeric_limits<float>::infinity() : engine.sampler().distance(nearest[i] - 1, at);
     }
 }
 
@@ -104,30 +115,28 @@ void add_counters(RenderStats& stats, const VisibilityCounters& counters, bool f
 }
 
 void add_counters(RenderStats& stats, const RasterCounters& counters, bool first) {
-    stats.fragments_passed += counters.fragments_passed;
+    stats.samples_tested += counters.tiles.samples_covered;
+    stats.fragments_passed += counters.tiles.fragments_passed;
+    stats.blocks_drawn += counters.tiles.blocks_drawn;
+    stats.blocks_hidden += counters.tiles.blocks_hidden;
     if (!first) return;
     stats.triangles = counters.triangles;
     stats.culled_frustum = counters.front.frustum;
     stats.culled_backface = counters.front.backface;
     stats.culled_degenerate = counters.front.degenerate;
     stats.clipped = counters.front.clipped;
+    stats.culled_no_sample = counters.front.no_sample;
+    stats.small_triangles = counters.front.small;
+    stats.large_triangles = counters.front.large;
     stats.pixels_covered = counters.pixels_covered;
 }
 
 RasterTargets make_planes(const RenderOptions& options, RenderResult& result) {
     RasterTargets targets;
-    const int w = options.width, h = options.height;
-    make_color_planes(options, result);
-    targets.rgba = result.color.data<std::uint8_t>();
-    if (options.want_linear) targets.linear = result.linear.data<float>();
-    if (options.want_depth) {
-        result.depth = Image(w, h, PixelFormat::kF32);
-        targets.distance = result.depth.data<float>();
-    }
-    if (options.want_primitive) {
-        result.primitive = Image(w, h, PixelFormat::kU32);
-        targets.triangle = result.primitive.data<std::uint32_t>();
-    }
+    targets.rgba = make_plane<std::uint8_t>(options.want_color, options, PixelFormat::kRgba8, result.color);
+    targets.linear = make_plane<float>(options.want_linear, options, PixelFormat::kRgba32f, result.linear);
+    targets.distance = make_plane<float>(options.want_depth, options, PixelFormat::kF32, result.depth);
+    targets.triangle = make_plane<std::uint32_t>(options.want_primitive, options, PixelFormat::kU32, result.primitive);
     return targets;
 }
 

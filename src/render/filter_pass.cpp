@@ -39,6 +39,11 @@ FilterPass::FilterPass(const RenderOptions& options, Arena* arena)
     covered_.assign(pixels, 0);
 }
 
+void FilterPass::restart() {
+    std::fill(sums_.begin(), sums_.end(), 0.0f);
+    std::fill(covered_.begin(), covered_.end(), char{0});
+}
+
 void FilterPass::add(int sample, const float* plane, const std::function<void(double)>& checkpoint) {
     for_each_row(height_, arena_, [&](int y) {
         checkpoint(0.0);

@@ -23,8 +23,12 @@ void for_each_row(int height, Arena* arena, const std::function<void(int)>& body
 
 class FilterPass {
   public:
-    // `arena` runs the rows and must outlive the pass; null: the calling thread does.
+    // `arena` runs the rows and must outlive the pass; null: the calling thread does. Ready for the first
+    // picture.
     FilterPass(const RenderOptions& options, Arena* arena);
+
+    // Forgets what was added: for the next picture.
+    void restart();
 
     // Floats of a sample's plane, four per pixel.
     std::size_t plane_floats() const { return sums_.size(); }

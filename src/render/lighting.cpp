@@ -117,7 +117,7 @@ AmbientView studio_ambient() { return {{0.50f, 0.52f, 0.56f}, {0.17f, 0.165f, 0.
 
 AmbientView uniform_ambient(Vec3 radiance) {
     const Vec3& r = radiance;
-    return {{r.x, r.y, r.z}, {r.x, r.y, r.z}, {0, 1, 0}};
+    return {{r.x, r.y, r.z}, {r.x, r.y, r.z}, {0, 1, 0}, true};
 }
 
 double metered_exposure(const Frame& frame, const ShadingContext& context) {

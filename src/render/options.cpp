@@ -2,6 +2,7 @@
 
 #include <tessera/error.h>
 
+#include "core/sampling.h"
 #include "image/color.h"
 
 #include <algorithm>
@@ -12,6 +13,9 @@ namespace tessera {
 namespace {
 
 [[noreturn]] void refuse(const std::string& message) { throw Error(ErrorCode::kUsage, message); }
+
+// 512 transparent layers all over a tile; some hundred MiB of working memory per thread.
+constexpr std::size_t kMostFragmentsPerTile = 512 * 64 * 64;
 
 // Depth, triangle and colour of every pixel while it is made, and the finished colour; a wide filter's
 // sums and its flag.
@@ -39,6 +43,9 @@ void check_options(const RenderOptions& o) {
         refuse("picture size " + std::to_string(o.width) + "x" + std::to_string(o.height) + ": sides must be 1 to " +
                std::to_string(kMaxImageSide));
     if (o.engine > Engine::kReferenceTrace) refuse("unknown engine");
+    if (o.encoding > Encoding::kLinear) refuse("unknown encoding");
+    const int side = o.raster.tile_side;
+    if (side != 0 && side != 32 && side != 64 && side != 128) refuse("tile sides are 32, 64 or 128 pixels");
     if (o.samples < 1 || o.samples > 256) refuse("samples must be 1 to 256");
     if (o.exposure_ev && !(std::fabs(*o.exposure_ev) <= 64.0f)) refuse("exposure must be within 64 EV");
     if (o.ambient && !(*o.ambient >= 0.0f && *o.ambient < 1e9f)) refuse("ambient radiance must not be negative");
@@ -59,14 +66,39 @@ FilmView film_view(const RenderOptions& options, double exposure) {
     FilmView film{};
     film.exposure = static_cast<float>(exposure);
     film.tone_map = options.tone_map;
+    film.encoding = options.encoding;
     if (options.background) {
         const Vec4& b = *options.background;
-        const float encoded[3] = {b.x, b.y, b.z};
+        const float stored[3] = {b.x, b.y, b.z};
         for (int i = 0; i < 3; ++i)
-            film.background[i] = static_cast<float>(linear_from_srgb(static_cast<double>(encoded[i])));
+            film.background[i] = options.encoding == Encoding::kLinear
+                                     ? stored[i]
+                                     : static_cast<float>(linear_from_srgb(static_cast<double>(stored[i])));
         film.background[3] = b.w;
     }
     return film;
+}
+
+std::vector<SamplePosition> sample_positions(const RenderOptions& options) {
+    std::vector<SamplePosition> positions;
+    for (int sample = 0; sample < options.samples; ++sample) {
+        const SampleOffset s = sample_offset(sample, options.samples);
+        positions.push_back({s.x, s.y});
+    }
+    return positions;
+}
+
+RasterSettings raster_settings(const RenderOptions& options, const FilmView& film, const RunControl& control) {
+    RasterSettings settings;
+    settings.samples = sample_positions(options);
+    settings.film = film;
+    settings.isa = resolve_isa(options.isa);
+    settings.tile_side = options.raster.tile_side;
+    settings.hierarchical_z = options.raster.hierarchical_z;
+    settings.count = options.raster.count_samples;
+    settings.max_fragments = std::min(control.max_fragments, kMostFragmentsPerTile);
+    settings.checkpoint = control.checkpoint;
+    return settings;
 }
 
 RunControl Watchdog::control(int step, int steps) const {

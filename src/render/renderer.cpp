@@ -1,10 +1,9 @@
 // The renderer on one page: scene -> frame -> shading -> visibility and shading -> film. Everything that
 // happens to a picture happens here, in this order.
 #include <tessera/error.h>
-#include <tessera/render.h>
+#include <tessera/renderer.h>
 
 #include "core/fp_environment.h"
-#include "core/sampling.h"
 #include "raster/engine.h"
 #include "reference/engine.h"
 #include "render/canvas.h"
@@ -12,121 +11,144 @@
 #include "render/shading_scene.h"
 #include "render/stopwatch.h"
 
-#include <algorithm>
-
 namespace tessera {
-namespace {
 
-// Shades what was seen at one sample position of every pixel and adds it to the picture.
-void shade_pass(ReferenceEngine& engine, const Visibility& seen, SamplePosition offset, Canvas& canvas,
-                const std::function<void(double)>& checkpoint) {
-    const Fragment* transparent = seen.transparent.data();
-    const Fragment* const end = transparent + seen.transparent.size();
-    for (std::size_t pixel = 0; pixel < seen.depth.size(); ++pixel) {
-        if (pixel % static_cast<std::size_t>(seen.width) == 0)
-            checkpoint(static_cast<double>(pixel) / static_cast<double>(seen.depth.size()));
-        const Fragment* const first = transparent;
-        while (transparent != end && transparent->pixel == pixel) ++transparent;
-        if (seen.triangle[pixel] == 0 && first == transparent) continue;
-        const SampleColor c = engine.shade_sample(seen, pixel, offset, first, transparent);
-        canvas.add(pixel, c.premultiplied, c.alpha);
+// Everything that outlives a frame.
+struct Renderer::Impl {
+    Impl(const Scene& s, const RenderOptions& o)
+        : scene(s), options(o), arena(o.threads), prepared(s), shading(s, prepared.used_materials(), arena, warnings) {
+        const bool wide = o.filter != PixelFilter::kBox && (o.want_color || o.want_linear);
+        if (o.engine != Engine::kRaster || !wide) return;
+        filter.emplace(o, &arena);
+        sample_plane.resize(filter->plane_floats());
     }
+
+    void draw(const View& view, RenderResult& result);
+    void draw_tiles(const Watchdog& watchdog, Stopwatch& watch, RenderResult& result);
+    void draw_reference(const Watchdog& watchdog, Stopwatch& watch, RenderResult& result);
+
+    const Scene& scene;
+    const RenderOptions options;
+    std::vector<std::string> warnings;  // of the materials
+    Arena arena;
+    PreparedScene prepared;
+    ShadingScene shading;
+    Frame frame;  // the latest
+    RasterEngine raster;
+    // Of filters wider than the pixel: the sums, and the picture of one sample, linear RGBA.
+    std::optional<FilterPass> filter;
+    std::vector<float> sample_plane;
+};
+
+Renderer::Renderer(const Scene& scene, const RenderOptions& options) {
+    check_options(options);
+    validate(scene);
+    const FpEnvironment exact;
+    impl_ = std::make_unique<Impl>(scene, options);
 }
 
-// 512 transparent layers all over a tile; some hundred MiB of working memory per thread.
-constexpr std::size_t kMostFragmentsPerTile = 512 * kTilePixels;
+void Renderer::Impl::draw(const View& view, RenderResult& result) {
+    const FpEnvironment exact;
+    result.stats = {};
+    Stopwatch watch(result.stats);
+    const Watchdog watchdog(options);
 
-// The tile rasterizer: visibility, shading and film inside each tile. A filter wider than the pixel has
-// the picture drawn once per sample, and the film comes after all of them.
-void draw_tiles(const Frame& frame, const ShadingScene& shading, const RenderOptions& options, Arena& arena,
-                const Watchdog& watchdog, Stopwatch& watch, RenderResult& result) {
-    std::vector<SamplePosition> samples;
-    for (int sample = 0; sample < options.samples; ++sample) {
-        const SampleOffset s = sample_offset(sample, options.samples);
-        samples.push_back({s.x, s.y});
-    }
-    RasterSettings settings;
-    settings.film = shading.film(options);
-    settings.isa = resolve_isa(options.isa);
+    make_frame(prepared, view, options.width, options.height, frame);
+    shading.light(scene, frame, options);
+    watch.phase("evaluate");
+
+    if (options.engine == Engine::kRaster)
+        draw_tiles(watchdog, watch, result);
+    else
+        draw_reference(watchdog, watch, result);
+
+    result.warnings = frame.warnings;
+    result.warnings.insert(result.warnings.end(), warnings.begin(), warnings.end());
+    result.stats.engine = options.engine;
+    result.stats.exposure = shading.exposure();
+    watch.finish();
+}
+
+// The tile rasterizer: visibility, shading and film inside each tile. With a filter that is wider than
+// the pixel, linear pictures of one sample each, and the film after the last of them.
+void Renderer::Impl::draw_tiles(const Watchdog& watchdog, Stopwatch& watch, RenderResult& result) {
+    RasterTargets targets = make_planes(options, result);
+    RasterSettings settings = raster_settings(options, shading.film(options), watchdog.control(0, 1));
     result.stats.isa = settings.isa;
     result.stats.threads = arena.threads();
-    RasterTargets targets = make_planes(options, result);
-    const auto draw = [&](std::vector<SamplePosition> positions, const RunControl& control, bool first) {
-        settings.samples = std::move(positions);
-        settings.max_fragments = std::min(control.max_fragments, kMostFragmentsPerTile);
-        settings.checkpoint = control.checkpoint;
-        add_counters(result.stats, draw_raster(frame, shading.context(), settings, targets, arena), first);
+    const auto draw = [&](const RasterTargets& to, bool first) {
+        add_counters(result.stats, raster.draw(frame, shading.context(), settings, to, arena), first);
         watch.phase("tiles");
     };
-    if (options.filter == PixelFilter::kBox) return draw(std::move(samples), watchdog.control(0, 1), true);
+    if (!filter) return draw(targets, true);
 
-    FilterPass filter(options, &arena);
-    std::vector<float> plane(options.want_linear ? 0 : filter.plane_floats());
-    if (!options.want_linear) targets.linear = plane.data();
+    filter->restart();
+    const std::vector<SamplePosition> positions = std::move(settings.samples);
+    RasterTargets sample_targets = targets;
+    sample_targets.rgba = nullptr;
+    sample_targets.linear = sample_plane.data();
     for (int sample = 0; sample < options.samples; ++sample) {
-        draw({samples[static_cast<std::size_t>(sample)]}, watchdog.control(sample, options.samples), sample == 0);
-        targets.distance = nullptr, targets.triangle = nullptr;  // the labels were taken with the first one
-        filter.add(sample, targets.linear, watchdog.control(0, 0).checkpoint);
+        settings.samples.assign(1, positions[static_cast<std::size_t>(sample)]);
+        settings.checkpoint = watchdog.control(sample, options.samples).checkpoint;
+        draw(sample_targets, sample == 0);
+        sample_targets.distance = nullptr, sample_targets.triangle = nullptr;  // done with the first one
+        filter->add(sample, sample_plane.data(), watchdog.control(0, 0).checkpoint);
         watch.phase("filter");
     }
-    develop_picture(filter.finish(), 1.0f, settings.film, options, &arena, result);
-    result.stats.pixels_covered = filter.pixels_covered();
+    develop_picture(filter->finish(), 1.0f, settings.film, options, &arena, targets);
+    result.stats.pixels_covered = filter->pixels_covered();
     watch.phase("film");
 }
 
 // The reference engines: pass by pass, everything in full.
-void draw_reference(const Frame& frame, const ShadingScene& shading, const RenderOptions& options,
-                    const Watchdog& watchdog, Stopwatch& watch, RenderResult& result) {
+void Renderer::Impl::draw_reference(const Watchdog& watchdog, Stopwatch& watch, RenderResult& result) {
     const bool tracing = options.engine == Engine::kReferenceTrace;
+    if (tracing && !is_centred(frame.projection))
+        throw Error(ErrorCode::kUsage, "reference-trace needs a picture that is centred on the camera's axis");
     ReferenceEngine engine(frame, shading.context(), tracing, options.shadows);
+    const RasterTargets targets = make_planes(options, result);
     watch.phase("build");
 
     Canvas canvas(options);
+    const std::vector<SamplePosition> positions = sample_positions(options);
     for (int sample = 0; sample < options.samples; ++sample) {
-        const SampleOffset s = sample_offset(sample, options.samples);
-        const SamplePosition offset{s.x, s.y};
+        const SamplePosition offset = positions[static_cast<std::size_t>(sample)];
         const Visibility seen = engine.see(offset, watchdog.control(2 * sample, 2 * options.samples));
         add_counters(result.stats, seen.counters, sample == 0);
         watch.phase("visibility");
-        shade_pass(engine, seen, offset, canvas, watchdog.control(2 * sample + 1, 2 * options.samples).checkpoint);
+        canvas.take_sample(sample, engine, seen, offset,
+                           watchdog.control(2 * sample + 1, 2 * options.samples).checkpoint);
         watch.phase("shading");
-        canvas.end_sample(sample, watchdog.control(0, 0).checkpoint);
     }
-    if (options.want_depth || options.want_primitive) {
-        take_labels(engine, watchdog.control(0, 0), options, result);
+    if (targets.distance || targets.triangle) {
+        take_labels(engine, watchdog.control(0, 0), targets);
         watch.phase("labels");
     }
-    canvas.develop(shading.film(options), result);
+    canvas.develop(shading.film(options), targets, result.stats);
     watch.phase("film");
 }
 
-}  // namespace
+Renderer::~Renderer() = default;
+Renderer::Renderer(Renderer&&) noexcept = default;
+Renderer& Renderer::operator=(Renderer&&) noexcept = default;
+
+void Renderer::draw(RenderResult& result) { impl_->draw(impl_->options.view, result); }
+void Renderer::draw(const View& view, RenderResult& result) { impl_->draw(view, result); }
+const RenderOptions& Renderer::options() const { return impl_->options; }
 
 RenderResult render(const Scene& scene, const RenderOptions& options) {
-    check_options(options);
-    validate(scene);
-    const FpEnvironment exact;
-    RenderResult result;
-    Stopwatch watch(result.stats);
-    const Watchdog watchdog(options);
-
-    const Frame frame = make_frame(scene, options.view, options.width, options.height);
-    result.warnings = frame.warnings;
-    watch.phase("evaluate");
-
-    Arena arena(options.threads);
-    const ShadingScene shading(scene, frame, options, arena, result.warnings);
+    RenderStats whole;
+    Stopwatch watch(whole);
+    Renderer renderer(scene, options);
     watch.phase("prepare");
-
-    if (options.engine == Engine::kRaster)
-        draw_tiles(frame, shading, options, arena, watchdog, watch, result);
-    else
-        draw_reference(frame, shading, options, watchdog, watch, result);
-
-    result.stats.engine = options.engine;
-    result.stats.exposure = shading.exposure();
-    result.stats.color_hash = hash_pixels(result.color);
+    RenderResult result;
+    renderer.draw(result);
+    if (options.want_color) result.stats.color_hash = hash_pixels(result.color);
     watch.finish();
+    auto& phases = result.stats.phases_ms;
+    phases.insert(phases.begin(), whole.phases_ms.front());
+    result.stats.frame_ms = whole.frame_ms;
+    result.stats.cpu_ms = whole.cpu_ms;
     return result;
 }
 

@@ -63,12 +63,16 @@ TextureView make_view(const MipChain& chain, const Sampler& sampler, bool srgb) 
     return v;
 }
 
+std::vector<bool> materials_of(const Scene& scene, const Frame& frame) {
+    std::vector<bool> used(scene.materials.size() + 1, false);
+    for (const InstanceView& i : frame.instances) used[i.material] = true;
+    return used;
+}
+
 }  // namespace
 
-void ShadingScene::make_materials(const Scene& scene, const Frame& frame, Arena& arena,
-                                  std::vector<std::string>& warnings) {
-    std::vector<bool> drawn(scene.materials.size() + 1, false);
-    for (const InstanceView& i : frame.instances) drawn[i.material] = true;
+ShadingScene::ShadingScene(const Scene& scene, const std::vector<bool>& used, Arena& arena,
+                           std::vector<std::string>& warnings) {
     for (const Material& m : scene.materials) materials_.push_back(convert(m));
     materials_.push_back(convert(Material{}));  // of primitives without one
 
@@ -77,7 +81,7 @@ void ShadingScene::make_materials(const Scene& scene, const Frame& frame, Arena&
     std::vector<std::pair<const Image*, bool>> wanted;
     std::vector<std::pair<int, bool>> views;
     for (std::size_t m = 0; m < scene.materials.size(); ++m) {
-        if (!drawn[m]) continue;
+        if (!used[m]) continue;
         for (std::size_t slot = 0; slot < kTextureSlots; ++slot) {
             const TextureRef& ref = scene.materials[m].textures[slot];
             if (ref.texture == kNone) continue;
@@ -111,7 +115,7 @@ void ShadingScene::make_materials(const Scene& scene, const Frame& frame, Arena&
         for (std::size_t slot = 0; slot < kTextureSlots; ++slot) {
             const TextureRef& ref = scene.materials[m].textures[slot];
             const auto view = view_of.find({ref.texture, is_srgb(static_cast<TextureSlot>(slot))});
-            if (!drawn[m] || view == view_of.end() || ref.uv_set < 0 || ref.uv_set >= kMaxUvSets) continue;
+            if (!used[m] || view == view_of.end() || ref.uv_set < 0 || ref.uv_set >= kMaxUvSets) continue;
             TextureInput& input = materials_[m].inputs[slot];
             input.texture = &textures_[view->second];
             input.uv_set = ref.uv_set;
@@ -120,8 +124,12 @@ void ShadingScene::make_materials(const Scene& scene, const Frame& frame, Arena&
 }
 
 ShadingScene::ShadingScene(const Scene& scene, const Frame& frame, const RenderOptions& options, Arena& arena,
-                           std::vector<std::string>& warnings) {
-    make_materials(scene, frame, arena, warnings);
+                           std::vector<std::string>& warnings)
+    : ShadingScene(scene, materials_of(scene, frame), arena, warnings) {
+    light(scene, frame, options);
+}
+
+void ShadingScene::light(const Scene& scene, const Frame& frame, const RenderOptions& options) {
     const bool studio =
         options.lighting == Lighting::kStudio || (options.lighting == Lighting::kAuto && frame.lights.empty());
     lights_ = studio ? studio_lights() : scene_lights(scene, frame);

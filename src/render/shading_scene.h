@@ -17,11 +17,17 @@ namespace tessera {
 
 class ShadingScene {
   public:
-    // Builds mip chains in parallel. `warnings` receives what cannot be honoured.
+    // Materials and textures, of the materials that `used` marks (PreparedScene::used_materials). Builds mip
+    // chains in parallel. `warnings` receives what cannot be honoured.
+    ShadingScene(const Scene& scene, const std::vector<bool>& used, Arena& arena, std::vector<std::string>& warnings);
+    // The same for one frame, and its lights.
     ShadingScene(const Scene& scene, const Frame& frame, const RenderOptions& options, Arena& arena,
                  std::vector<std::string>& warnings);
     ShadingScene(const ShadingScene&) = delete;
     ShadingScene& operator=(const ShadingScene&) = delete;
+
+    // Lights and exposure of a frame, in place of an earlier one's.
+    void light(const Scene& scene, const Frame& frame, const RenderOptions& options);
 
     const ShadingContext& context() const { return context_; }
     double exposure() const { return exposure_; }
@@ -30,8 +36,6 @@ class ShadingScene {
     FilmView film(const RenderOptions& options) const;
 
   private:
-    void make_materials(const Scene& scene, const Frame& frame, Arena& arena, std::vector<std::string>& warnings);
-
     std::vector<MipChain> chains_;
     std::vector<TextureView> textures_;
     std::vector<MaterialView> materials_;

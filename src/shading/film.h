@@ -1,4 +1,4 @@
-// The film: from a pixel's linear radiance to display values. Exposure, tone map, background, sRGB.
+// The film: from a pixel's linear radiance to display values. Exposure, tone map, background, encoding.
 #pragma once
 
 #include <tessera/shading_model.h>
@@ -15,13 +15,20 @@ struct FilmView {
     float exposure;  // factor on radiance
     ToneMap tone_map;
     float background[4];  // display-linear RGB, alpha; alpha 0: transparent
+    Encoding encoding = Encoding::kSrgb;
 };
 
-// 8-bit sRGB with straight alpha, one channel per number.
+// 8 bits per channel with straight alpha, one channel per number.
 template <class F>
 struct DisplayPixel {
     IntOf<F> r, g, b, a;
 };
+
+// The 8-bit code nearest to a linear value: what is below 0 or NaN becomes 0, what is above 1 becomes 255.
+template <class F>
+TESSERA_INLINE IntOf<F> linear8_from_linear(F x) {
+    return truncate_int(clamp(x, F(0.0f), F(1.0f)) * F(255.0f) + F(0.5f));
+}
 
 // `premultiplied` is radiance times coverage, the mean over the samples of a pixel; `coverage` the
 // mean of their alpha. Tone-mapped before it is laid over the background, so that edges against a
@@ -30,8 +37,11 @@ template <class F>
 TESSERA_INLINE DisplayPixel<F> develop(const FilmView& film, const Vec3T<F>& premultiplied, F coverage) {
     const F zero(0.0f), one(1.0f);
     const F a = saturate(coverage);
+    // Where every pixel is wholly covered, what follows but the tone map changes nothing.
+    const bool whole = all(a == one);
     const auto covered = a > zero;
-    const F scale = select(covered, F(film.exposure) / select(covered, a, one), zero);
+    F scale(film.exposure);
+    if (!whole) scale = select(covered, scale / select(covered, a, one), zero);
     F r = premultiplied.x * scale, g = premultiplied.y * scale, b = premultiplied.z * scale;
     switch (film.tone_map) {
         case ToneMap::kNone:
@@ -44,13 +54,19 @@ TESSERA_INLINE DisplayPixel<F> develop(const FilmView& film, const Vec3T<F>& pre
             tone_map_aces(r, g, b);
             break;
     }
-    const F behind = F(film.background[3]) * (one - a);
-    const F alpha = a + behind;
-    const F inverse = one / select(alpha > zero, alpha, one);
-    r = (r * a + F(film.background[0]) * behind) * inverse;
-    g = (g * a + F(film.background[1]) * behind) * inverse;
-    b = (b * a + F(film.background[2]) * behind) * inverse;
-    return {srgb8_from_linear(r), srgb8_from_linear(g), srgb8_from_linear(b), to_int(alpha * F(255.0f) + F(0.5f))};
+    F alpha = one;
+    if (!whole) {
+        const F behind = F(film.background[3]) * (one - a);
+        alpha = a + behind;
+        const F inverse = one / select(alpha > zero, alpha, one);
+        r = (r * a + F(film.background[0]) * behind) * inverse;
+        g = (g * a + F(film.background[1]) * behind) * inverse;
+        b = (b * a + F(film.background[2]) * behind) * inverse;
+    }
+    const IntOf<F> a8 = truncate_int(alpha * F(255.0f) + F(0.5f));
+    if (film.encoding == Encoding::kLinear)
+        return {linear8_from_linear(r), linear8_from_linear(g), linear8_from_linear(b), a8};
+    return {srgb8_from_linear(r), srgb8_from_linear(g), srgb8_from_linear(b), a8};
 }
 
 }  // namespace tessera

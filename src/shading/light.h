@@ -23,6 +23,7 @@ struct LightView {
 // ambient light.
 struct AmbientView {
     float sky[3], ground[3], up[3];
+    bool uniform = false;  // sky and ground are equal
 };
 
 template <class F>
@@ -60,6 +61,7 @@ TESSERA_INLINE LightSample<F> sample_light(const LightView& light, const Vec3T<F
 // Mean ambient radiance around `direction`; `softness` 0 (a mirror's sharp horizon) to 1 (diffuse).
 template <class F>
 TESSERA_INLINE Vec3T<F> ambient_radiance(const AmbientView& ambient, const Vec3T<F>& direction, F softness) {
+    if (ambient.uniform) return Vec3T<F>::load(ambient.ground);
     const F height = dot(Vec3T<F>::load(ambient.up), direction);
     const F t = saturate(F(0.5f) + F(0.5f) * height / (F(0.25f) + F(0.75f) * softness));
     return mix(Vec3T<F>::load(ambient.ground), Vec3T<F>::load(ambient.sky), t * t * (F(3.0f) - F(2.0f) * t));

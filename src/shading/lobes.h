@@ -17,9 +17,22 @@ struct Incidence {
     F n_l;  // cosine, not clamped
 };
 
+// Exponents up to this that are whole numbers are powers by multiplication.
+inline constexpr float kLargestWholeExponent = 1024.0f;
+
 template <class F>
 TESSERA_INLINE F power_cosine(F cosine, float exponent) {
-    return math::pow(max(cosine, F(0.0f)), F(exponent));
+    const F x = max(cosine, F(0.0f));
+    if (!(exponent >= 1.0f && exponent <= kLargestWholeExponent)) return math::pow(x, F(exponent));
+    const int whole = static_cast<int>(exponent);
+    if (static_cast<float>(whole) != exponent) return math::pow(x, F(exponent));
+    // From the highest bit down (Knuth, The Art of Computer Programming, section 4.6.3).
+    F power = x;
+    for (int bit = 30 - __builtin_clz(static_cast<unsigned>(whole)); bit >= 0; --bit) {
+        power = power * power;
+        if (whole >> bit & 1) power = power * x;
+    }
+    return power;
 }
 
 // kd (l.n): Lambert's cosine law with I_l = irradiance / pi.

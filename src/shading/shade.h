@@ -31,14 +31,14 @@ TESSERA_INLINE Vec3T<F> view_direction(const ShadingContext& context, const Vec3
 
 // `visible(light, sample)` gives the part of a light that arrives, 0 .. 1 (shadows). Lights are
 // summed in their order.
-template <class F, class Visible>
+template <bool kTextured = true, class F, class Visible>
 TESSERA_INLINE ShadedPoint<F> shade(const ShadingContext& context, const MaterialView& m, const SurfacePoint<F>& s,
                                     Visible&& visible) {
     if (m.model == ShadingModel::kUnlit) {
-        const Vec4T<F> base = base_color(m, s);
+        const Vec4T<F> base = base_color<kTextured>(m, s);
         return {base.xyz() * F(context.unlit_scale), coverage_of_alpha(m, base.w)};
     }
-    const LobeParameters<F> p = evaluate_material(m, s, view_direction(context, s.position));
+    const LobeParameters<F> p = evaluate_material<kTextured>(m, s, view_direction(context, s.position));
     Vec3T<F> radiance = p.emission + reflect_ambient(m, p, context.ambient) * p.occlusion;
     for (int i = 0; i < context.light_count; ++i) {
         const LightSample<F> light = sample_light(context.lights[i], s.position);

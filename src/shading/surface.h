@@ -1,7 +1,7 @@
-// THE surface function: from a triangle and a picture position to barycentrics, their derivatives
-// and depth. Every engine uses it, so equal (triangle, position) pairs give equal bits whatever found
-// them. Templates over the number type; spaces as in geometry/draw_data.h; picture positions and
-// snapped vertices in 24.8 fixed point (1/256 pixel, y down).
+// A triangle's vertices in the picture and its depth there. Every engine uses these, so equal
+// (triangle, position) pairs give equal bits whatever found them; surface_planes.h goes on from here
+// to everything else that shading reads. Templates over the number type; spaces as in
+// geometry/draw_data.h; picture positions and snapped vertices in 24.8 fixed point (1/256 pixel, y down).
 #pragma once
 
 #include "geometry/draw_data.h"
@@ -114,53 +114,6 @@ TESSERA_INLINE DepthPlane<F> depth_plane(const PictureVertex<F> (&p)[3], const F
     plane.lowest = min(min(z[0], z[1]), z[2]);
     plane.highest = max(max(z[0], z[1]), z[2]);
     return plane;
-}
-
-// --- barycentrics ---------------------------------------------------------------------------
-
-// Perspective-correct barycentric coordinates and their change per pixel to the right and down.
-template <class F>
-struct Barycentrics {
-    F b[3], ddx[3], ddy[3];
-};
-
-// With P the position in normalised device coordinates and q_i = (x_i, y_i) - P w_i, the homogeneous
-// barycentrics are the edge functions q_j x q_k (Olano and Greer 1997, "Triangle scan conversion
-// using 2D homogeneous coordinates", section 4): no division by w, so vertices behind the eye do no
-// harm. `front` is +1 where the triangle is counter-clockwise, -1 where it is clockwise. Coordinates
-// are clamped to the triangle, for the position may lie outside by the snapping of the vertices.
-template <class F>
-TESSERA_INLINE Barycentrics<F> barycentrics(const ClipVertex<F> (&v)[3], const Vec2T<F>& p, F front, float width,
-                                            float height) {
-    F qx[3], qy[3], e[3], ex[3], ey[3];
-    for (int i = 0; i < 3; ++i) {
-        qx[i] = v[i].x - p.x * v[i].w;
-        qy[i] = v[i].y - p.y * v[i].w;
-    }
-    const F step_x = front * F(2.0f / width), step_y = front * F(-2.0f / height);
-    for (int i = 0; i < 3; ++i) {
-        const int j = (i + 1) % 3, k = (i + 2) % 3;
-        e[i] = max((qx[j] * qy[k] - qy[j] * qx[k]) * front, F(0.0f));
-        ex[i] = (qy[j] * v[k].w - v[j].w * qy[k]) * step_x;
-        ey[i] = (v[j].w * qx[k] - qx[j] * v[k].w) * step_y;
-    }
-    const F sum = e[0] + e[1] + e[2];
-    // Below that the reciprocal would overflow.
-    const auto usable = sum > F(1e-37f);
-    const F inverse = F(1.0f) / select(usable, sum, F(1.0f));
-    const F sum_x = ex[0] + ex[1] + ex[2], sum_y = ey[0] + ey[1] + ey[2];
-    Barycentrics<F> r;
-    for (int i = 0; i < 3; ++i) {
-        r.b[i] = select(usable, e[i] * inverse, F(i == 0 ? 1.0f : 0.0f));
-        r.ddx[i] = select(usable, (ex[i] - r.b[i] * sum_x) * inverse, F(0.0f));
-        r.ddy[i] = select(usable, (ey[i] - r.b[i] * sum_y) * inverse, F(0.0f));
-    }
-    return r;
-}
-
-template <class F>
-TESSERA_INLINE F interpolate(const F (&b)[3], F a0, F a1, F a2) {
-    return b[0] * a0 + b[1] * a1 + b[2] * a2;
 }
 
 }  // namespace tessera

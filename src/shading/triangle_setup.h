@@ -1,10 +1,10 @@
-// What the picture makes of one triangle: rejected, degenerate, or snapped vertices, orientation and
-// the canonical depth plane. Scalar, by definition rather than for speed: the reference engines draw
+// What the picture makes of one triangle: rejected, degenerate, or snapped vertices, orientation, the
+// canonical depth plane, the planes of the surface. Scalar, by definition rather than for speed: the reference engines draw
 // from it, and every tracing engine recomputes the depth of its hits from it. Picture coordinates in
 // 24.8 fixed point, y down.
 #pragma once
 
-#include "shading/surface.h"
+#include "shading/surface_planes.h"
 
 #include <cstdint>
 
@@ -45,5 +45,12 @@ inline std::int64_t twice_area(const SnappedVertex& a, const SnappedVertex& b, c
 // Sets up triangle `index` of the instance (0-based within its mesh).
 void setup_triangle(const InstanceView& instance, std::uint32_t index, const ProjectionView& projection,
                     TriangleSetup& out);
+
+// The attributes of a vertex; zeros where the mesh has none.
+Corner<float> fetch_corner(const MeshView& mesh, std::uint32_t vertex);
+
+// Writes the record of the triangle's planes, surface_floats(layout) numbers, for a visible set-up.
+void make_surface_record(const InstanceView& instance, std::uint32_t index, const TriangleSetup& setup,
+                         const ProjectionView& projection, const SurfaceLayout& layout, float* record);
 
 }  // namespace tessera

@@ -50,6 +50,7 @@ template <class F>
 TESSERA_INLINE Vec3T<F> normalize_or(const Vec3T<F>& a, const Vec3T<F>& fallback) {
     const F squared = dot(a, a);
     const auto usable = (squared > F(1e-37f)) & (squared < F(1e37f));
+    if (all(usable)) return a * (F(1.0f) / sqrt(squared));
     const F scale = F(1.0f) / sqrt(select(usable, squared, F(1.0f)));
     return {select(usable, a.x * scale, fallback.x), select(usable, a.y * scale, fallback.y),
             select(usable, a.z * scale, fallback.z)};

@@ -1,6 +1,10 @@
 # The built command under test, and the checks that are scripts.
 find_package(simdjson REQUIRED)
 target_link_libraries(${target} PRIVATE simdjson::simdjson)
+# The workloads of `tessera bench`, which are compared with bench/workloads.h.
+foreach(name workloads workload_meshes parse)
+  target_sources(${target} PRIVATE ${PROJECT_SOURCE_DIR}/src/cli/${name}.cpp)
+endforeach()
 find_package(Python3 COMPONENTS Interpreter)
 if(Python3_FOUND)
   add_test(NAME scenes COMMAND ${Python3_EXECUTABLE} ${PROJECT_SOURCE_DIR}/scenes/generate.py --check)

@@ -47,6 +47,21 @@ TEST_F(CliRender, WritesAJpeg) {
     EXPECT_EQ(tessera::read_image_info(std::as_bytes(std::span(file))).codec, "jpeg");
 }
 
+TEST_F(CliRender, LinearEncodingIsDarkerAndKeepsTheBackground) {
+    ASSERT_EQ(render({"-o", in_folder("s.png"), "--background", "#203040", "--eye", "0,1,9"}).code, 0);
+    ASSERT_EQ(
+        render({"-o", in_folder("l.png"), "--background", "#203040", "--eye", "0,1,9", "--encoding", "linear"}).code,
+        0);
+    const tessera::Image srgb = tessera::read_image(in_folder("s.png")),
+                         linear = tessera::read_image(in_folder("l.png"));
+    const auto *s = srgb.data<std::uint8_t>(), *l = linear.data<std::uint8_t>();
+    EXPECT_EQ(std::vector<int>(s, s + 3), (std::vector<int>{0x20, 0x30, 0x40}));
+    EXPECT_EQ(std::vector<int>(l, l + 3), (std::vector<int>{0x20, 0x30, 0x40}));
+    std::uint64_t sum_srgb = 0, sum_linear = 0;
+    for (std::size_t i = 0; i < srgb.bytes().size(); ++i) sum_srgb += s[i], sum_linear += l[i];
+    EXPECT_LT(sum_linear, sum_srgb);
+}
+
 TEST_F(CliRender, StreamsTheSamePngToStdout) {
     ASSERT_EQ(render({"-o", in_folder("a.png")}).code, 0);
     const Outcome run = render({"-o", "-"});
@@ -181,6 +196,7 @@ TEST_F(CliRender, UsageErrorsExitWith2AndNameTheOption) {
         {{"-o", out, "--background", "#12345"}, "--background"},
         {{"-o", out, "--exposure", "nan"}, "--exposure"},
         {{"-o", out, "--tone-map", "film"}, "--tone-map"},
+        {{"-o", out, "--encoding", "gamma"}, "--encoding"},
         {{"-o", out, "--lighting", "dark"}, "--lighting"},
         {{"-o", out, "--isa", "mmx"}, "mmx"},
         {{"-o", out, "--threads", "0"}, "--threads"},

@@ -201,6 +201,48 @@ TEST(Filter, RAS7_TheTentOverOneSampleIsTheBox) {
     }
 }
 
+TEST(Filter, RAS7_AWarmRendererForgetsTheLastFrame) {
+    const Scene scene = scene_file("transparency.gltf");
+    for (const PixelFilter filter : kWide) {
+        RenderOptions o = filtered(filter, 50, 38, 2);
+        o.want_depth = true;
+        const RenderResult cold = render(scene, o);
+        View other = o.view;
+        other.eye = Vec3{0, 1, 9};
+        other.target = Vec3{0, 0, 0};
+        Renderer renderer(scene, o);
+        RenderResult warm;
+        renderer.draw(other, warm);
+        EXPECT_FALSE(same_bytes(cold.linear, warm.linear));
+        renderer.draw(warm);
+        EXPECT_TRUE(same_bytes(cold.color, warm.color));
+        EXPECT_TRUE(same_bytes(cold.linear, warm.linear));
+        EXPECT_TRUE(same_bytes(cold.depth, warm.depth));
+        EXPECT_EQ(cold.stats.pixels_covered, warm.stats.pixels_covered);
+    }
+}
+
+TEST(Filter, RAS7_OnlyThePlanesThatAreWanted) {
+    const Scene scene = scene_file("transparency.gltf");
+    for (const Engine engine : kEngines) {
+        RenderOptions o = filtered(PixelFilter::kGaussian, 50, 38, 2);
+        o.engine = engine;
+        o.want_depth = o.want_primitive = true;
+        const RenderResult all = render(scene, o);
+        o.want_color = false;
+        const RenderResult linear = render(scene, o);
+        EXPECT_TRUE(linear.color.empty()) << name(engine);
+        EXPECT_TRUE(same_bytes(all.linear, linear.linear)) << name(engine);
+        EXPECT_EQ(all.stats.pixels_covered, linear.stats.pixels_covered) << name(engine);
+        o.want_linear = false;
+        const RenderResult labels = render(scene, o);
+        EXPECT_TRUE(labels.color.empty() && labels.linear.empty()) << name(engine);
+        EXPECT_TRUE(same_bytes(all.depth, labels.depth)) << name(engine);
+        EXPECT_TRUE(same_bytes(all.primitive, labels.primitive)) << name(engine);
+        EXPECT_GT(labels.stats.pixels_covered, 100u) << name(engine);
+    }
+}
+
 ErrorCode refusal(const Scene& scene, const RenderOptions& options) {
     try {
         render(scene, options);

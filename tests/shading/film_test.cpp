@@ -54,6 +54,17 @@ TEST(Film, TonesAreMappedBeforeTheBackground) {
     }
 }
 
+TEST(Film, LinearEncodingIsTheNearestCodeOfEveryValue) {
+    const FilmView film{1, ToneMap::kNone, {0, 0, 0, 1}, Encoding::kLinear};
+    for (int i = 0; i <= 2550; ++i) {
+        const float value = static_cast<float>(i) / 2550;
+        ASSERT_EQ(develop<float>(film, Vec3T<float>::splat(value), 1).r, static_cast<int>(value * 255.0f + 0.5f)) << i;
+    }
+    EXPECT_EQ(develop<float>(film, Vec3T<float>::splat(-3), 1).g, 0);
+    EXPECT_EQ(develop<float>(film, Vec3T<float>::splat(kNan), 1).g, 0);
+    EXPECT_EQ(develop<float>(film, Vec3T<float>::splat(1e30f), 1).g, 255);
+}
+
 TEST(Film, ExposureIsAFactor) {
     for (const float exposure : {0.25f, 1.0f, 8.0f}) {
         const DisplayPixel<float> p =

@@ -1,0 +1,111 @@
+// Between records in memory and lanes: lane i of the vectors is the record at pointer(i). 128-bit loads
+// and a transposition in registers, which is several times faster than gathering each number. The
+// one-lane versions define the meaning; `pointer` is called once for every lane.
+#pragma once
+
+#include "simd/vec.h"
+
+namespace tessera {
+
+// Four floats of every record.
+template <class Pointer>
+TESSERA_INLINE void load_records(Pointer&& pointer, float& a, float& b, float& c, float& d) {
+    const float* p = pointer(0);
+    a = p[0], b = p[1], c = p[2], d = p[3];
+}
+template <class Pointer>
+TESSERA_INLINE void store_records(Pointer&& pointer, float a, float b, float c, float d) {
+    float* p = pointer(0);
+    p[0] = a, p[1] = b, p[2] = c, p[3] = d;
+}
+// kLanes consecutive records of three floats.
+TESSERA_INLINE void load_triples(const float* p, float& a, float& b, float& c) { a = p[0], b = p[1], c = p[2]; }
+
+TESSERA_INLINE std::uint32_t or3(std::uint32_t a, std::uint32_t b, std::uint32_t c) { return a | b | c; }
+TESSERA_INLINE std::int32_t or3(std::int32_t a, std::int32_t b, std::int32_t c) { return a | b | c; }
+// The least of the lanes; which zero it is where both signs occur is not specified.
+TESSERA_INLINE float least_lane(float a) { return a; }
+
+}  // namespace tessera
+
+#if defined(TESSERA_ISA_NAMESPACE) && TESSERA_SIMD_LANES > 1
+
+namespace tessera::TESSERA_ISA_NAMESPACE::lanes {
+
+// Within each 128 bits: (a, b, c, d) are the rows of a 4x4 matrix, and become its columns.
+TESSERA_INLINE void transpose4(Float& a, Float& b, Float& c, Float& d) {
+    const Tag<float> f;
+    const hn::Repartition<std::uint64_t, Tag<float>> u;
+    const auto ab_low = hn::BitCast(u, hn::InterleaveLower(f, a.v, b.v));
+    const auto ab_high = hn::BitCast(u, hn::InterleaveUpper(f, a.v, b.v));
+    const auto cd_low = hn::BitCast(u, hn::InterleaveLower(f, c.v, d.v));
+    const auto cd_high = hn::BitCast(u, hn::InterleaveUpper(f, c.v, d.v));
+    a = Float(hn::BitCast(f, hn::InterleaveLower(u, ab_low, cd_low)));
+    b = Float(hn::BitCast(f, hn::InterleaveUpper(u, ab_low, cd_low)));
+    c = Float(hn::BitCast(f, hn::InterleaveLower(u, ab_high, cd_high)));
+    d = Float(hn::BitCast(f, hn::InterleaveUpper(u, ab_high, cd_high)));
+}
+
+// 128 bits from each of kCount / 4 addresses.
+template <class Pointer>
+TESSERA_INLINE Float load_quarters(Pointer&& pointer) {
+    const hn::FixedTag<float, 4> d4;
+    if constexpr (kCount == 4) {
+        return Float(hn::LoadU(d4, pointer(0)));
+    } else {
+        const hn::FixedTag<float, kCount < 8 ? kCount : 8> d8;
+        const auto low = hn::Combine(d8, hn::LoadU(d4, pointer(1)), hn::LoadU(d4, pointer(0)));
+        if constexpr (kCount == 8) {
+            return Float(low);
+        } else {
+            const auto high = hn::Combine(d8, hn::LoadU(d4, pointer(3)), hn::LoadU(d4, pointer(2)));
+            return Float(hn::Combine(Tag<float>(), high, low));
+        }
+    }
+}
+
+template <class Pointer, class V>
+TESSERA_INLINE void store_quarters(Pointer&& pointer, V a) {
+    const hn::FixedTag<float, 4> d4;
+    if constexpr (kCount == 4) {
+        hn::StoreU(a.v, d4, pointer(0));
+    } else if constexpr (kCount == 8) {
+        hn::StoreU(hn::LowerHalf(d4, a.v), d4, pointer(0));
+        hn::StoreU(hn::UpperHalf(d4, a.v), d4, pointer(1));
+    } else {
+        const hn::FixedTag<float, kCount < 8 ? kCount : 8> d8;
+        const auto low = hn::LowerHalf(d8, a.v), high = hn::UpperHalf(d8, a.v);
+        hn::StoreU(hn::LowerHalf(d4, low), d4, pointer(0));
+        hn::StoreU(hn::UpperHalf(d4, low), d4, pointer(1));
+        hn::StoreU(hn::LowerHalf(d4, high), d4, pointer(2));
+        hn::StoreU(hn::UpperHalf(d4, high), d4, pointer(3));
+    }
+}
+
+template <class Pointer>
+TESSERA_INLINE void load_records(Pointer&& pointer, Float& a, Float& b, Float& c, Float& d) {
+    a = load_quarters([&](int q) { return pointer(4 * q); });
+    b = load_quarters([&](int q) { return pointer(4 * q + 1); });
+    c = load_quarters([&](int q) { return pointer(4 * q + 2); });
+    d = load_quarters([&](int q) { return pointer(4 * q + 3); });
+    transpose4(a, b, c, d);
+}
+template <class Pointer>
+TESSERA_INLINE void store_records(Pointer&& pointer, Float a, Float b, Float c, Float d) {
+    transpose4(a, b, c, d);
+    store_quarters([&](int q) { return pointer(4 * q); }, a);
+    store_quarters([&](int q) { return pointer(4 * q + 1); }, b);
+    store_quarters([&](int q) { return pointer(4 * q + 2); }, c);
+    store_quarters([&](int q) { return pointer(4 * q + 3); }, d);
+}
+TESSERA_INLINE void load_triples(const float* p, Float& a, Float& b, Float& c) {
+    hn::LoadInterleaved3(Tag<float>(), p, a.v, b.v, c.v);
+}
+
+TESSERA_INLINE Int or3(Int a, Int b, Int c) { return Int(hn::Or3(a.v, b.v, c.v)); }
+TESSERA_INLINE Uint or3(Uint a, Uint b, Uint c) { return Uint(hn::Or3(a.v, b.v, c.v)); }
+TESSERA_INLINE float least_lane(Float a) { return hn::GetLane(hn::MinOfLanes(Tag<float>(), a.v)); }
+
+}  // namespace tessera::TESSERA_ISA_NAMESPACE::lanes
+
+#endif

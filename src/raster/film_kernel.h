@@ -1,0 +1,102 @@
+// What is seen of a tile; and from its sums to the planes of the picture: colours developed, labels
+// written. Part of the
+// kernel file, once per instruction set.
+#pragma once
+
+#include "raster/visibility_kernel.h"
+
+namespace tessera::TESSERA_ISA_NAMESPACE {
+
+inline void find_visible(VisibleJob& job) {
+    constexpr int kWidth = kLanes<Float>;
+    __builtin_memset(job.seen, 0, job.triangle_count + 1);
+    std::uint32_t last = 0;
+    for (int at = 0; at < job.pixels; at += kWidth) {
+        const Uint ids = load<Uint>(job.ordinal + at);
+        if (all((ids == Uint(last)) | (ids == Uint(0u)))) continue;
+        for (int lane = 0; lane < kWidth; ++lane) {
+            last = job.ordinal[at + lane];
+            job.seen[last] = 1;
+        }
+    }
+    job.count = 0;
+    for (std::uint32_t i = 1; i <= job.triangle_count; ++i) {
+        job.list[job.count] = i;
+        job.count += job.seen[i];
+    }
+}
+
+// Writes a vector of numbers of 4 bytes of a block to rows of the picture, as far as they lie in it.
+// (x, y): the vector's first pixel in the tile.
+TESSERA_INLINE void store_pixels(const Uint& values, unsigned char* first_pixel, std::size_t stride, int x, int y,
+                                 int width, int height) {
+    alignas(64) std::uint32_t all[kLanes<Float>];
+    store(all, values);
+    constexpr int kColumns = kLanes<Float> < kBlockSide ? kLanes<Float> : kBlockSide;
+    for (int row = 0; row < kRows; ++row) {
+        if (y + row >= height) return;
+        unsigned char* const to = first_pixel + static_cast<std::size_t>(y + row) * stride + 4 * static_cast<std::size_t>(x);
+        if (x + kColumns <= width)
+            __builtin_memcpy(to, all + row * kColumns, 4 * kColumns);
+        else if (x < width)
+            __builtin_memcpy(to, all + row * kColumns, 4 * static_cast<std::size_t>(width - x));
+    }
+}
+
+// Visits the vectors of a tile's blocks: visit(place, x, y) with the first pixel in the tile.
+template <class Visit>
+TESSERA_INLINE void for_each_vector(int side, int width, int height, Visit&& visit) {
+    const int blocks = side / kBlockSide;
+    for (int by = 0; by * kBlockSide < height; ++by)
+        for (int bx = 0; bx * kBlockSide < width; ++bx)
+            for (int at = 0; at < kBlockPixels; at += kLanes<Float>)
+                visit((by * blocks + bx) * kBlockPixels + at, bx * kBlockSide + at % kBlockSide,
+                      by * kBlockSide + at / kBlockSide);
+}
+
+inline void develop_tile(const DevelopJob& job) {
+    const Float weight(job.weight), zero(0.0f);
+    const auto pack = [](const DisplayPixel<Float>& d) {
+        return as_uint(d.r | (d.g << 8) | (d.b << 16) | (d.a << 24));
+    };
+    const Uint background = pack(develop(job.film, Vec3T<Float>{zero, zero, zero}, zero));
+    for_each_vector(job.side, job.width, job.height, [&](int at, int x, int y) {
+        const Float alpha = load<Float>(job.alpha + at);
+        Uint pixels = background;
+        if (any(alpha != zero)) {
+            const Vec3T<Float> mean{load<Float>(job.r + at) * weight, load<Float>(job.g + at) * weight,
+                                    load<Float>(job.b + at) * weight};
+            pixels = pack(develop(job.film, mean, alpha * weight));
+        }
+        store_pixels(pixels, job.rgba, job.stride, x, y, job.width, job.height);
+    });
+}
+
+inline void label_tile(const LabelJob& job) {
+    for_each_vector(job.side, job.width, job.height, [&](int at, int x, int y) {
+        const Uint ordinal = load<Uint>(job.ordinal + at);
+        const Mask hit = ordinal != Uint(0u);
+        if (job.distance) {
+            const Float infinity = as_float(Uint(0x7f800000u));
+            const Float distance =
+                any(hit) ? select(hit, distance_of_depth(job.projection, load<Float>(job.depth + at)), infinity)
+                         : infinity;
+            store_pixels(as_uint(distance), reinterpret_cast<unsigned char*>(job.distance), 4 * job.stride, x, y,
+                         job.width, job.height);
+        }
+        if (job.triangle) {
+            alignas(64) std::uint32_t numbers[kLanes<Float>];
+            for (int lane = 0; lane < kLanes<Float>; ++lane) {
+                const std::uint32_t o = job.ordinal[at + lane];
+                numbers[lane] = 0;
+                if (o == 0) continue;
+                const TileTriangle& t = job.triangles[o - 1];
+                numbers[lane] = job.instances[t.instance].first_triangle + t.triangle + 1;
+            }
+            store_pixels(load<Uint>(numbers), reinterpret_cast<unsigned char*>(job.triangle), 4 * job.stride, x, y,
+                         job.width, job.height);
+        }
+    });
+}
+
+}  // namespace tessera::TESSERA_ISA_NAMESPACE

@@ -1,0 +1,13 @@
+// Shading kernels, compiled once per instruction set.
+#include "raster/shade_kernel.h"
+
+namespace tessera::TESSERA_ISA_NAMESPACE {
+
+// A whole tile through the constant layouts; lists, which are short, as they come.
+void shade_tile(const ShadeJob& job) {
+    with_kind(job, [&](auto kind) { shade_tile_as<decltype(kind)>(job); });
+}
+
+void shade_points(const ShadeJob& job) { shade_points_as<Textured<AnyLayout>>(job); }
+
+}  // namespace tessera::TESSERA_ISA_NAMESPACE

@@ -1,0 +1,149 @@
+// Surface records of as many triangles at a time as there are lanes, and samples of them. Part of the
+// kernel file, once per instruction set.
+#pragma once
+
+#include "raster/setup_kernel.h"
+
+namespace tessera::TESSERA_ISA_NAMESPACE {
+
+TESSERA_INLINE SurfaceLayout layout_of(const SurfaceSource& source, const InstanceView& instance) {
+    return surface_layout(instance.mesh, source.shading->materials[instance.material],
+                          source.projection.orthographic);
+}
+
+// The arrays of a mesh that a layout needs.
+struct CornerArrays {
+    RecordArray<3> positions, normals;
+    RecordArray<4> tangents, colors;
+    RecordArray<2> uvs[kMaxUvSets];
+
+    CornerArrays(const MeshView& mesh, const SurfaceLayout& l) : positions(mesh.positions, mesh.vertex_count) {
+        if (l.normal >= 0) normals = {mesh.normals, mesh.vertex_count};
+        if (l.tangent >= 0) tangents = {mesh.tangents, mesh.vertex_count};
+        if (l.color >= 0) colors = {mesh.colors, mesh.vertex_count};
+        for (int set = 0; set < kMaxUvSets; ++set)
+            if (l.uv[set] >= 0) uvs[set] = {mesh.uvs[set], mesh.vertex_count};
+    }
+
+    TESSERA_INLINE void load(const SurfaceLayout& l, const std::uint32_t (&vertex)[kMaxLanes], Corner<Float>& c) const {
+        Float unused, unused2;
+        const auto from = [&vertex](const auto& array) {
+            return [&vertex, &array](int lane) { return array.at(vertex[lane]); };
+        };
+        const Float zero(0.0f);
+        c.normal = {zero, zero, zero};
+        c.tangent = c.color = {zero, zero, zero, zero};
+        load_records(from(positions), c.position.x, c.position.y, c.position.z, unused);
+        if (l.normal >= 0) load_records(from(normals), c.normal.x, c.normal.y, c.normal.z, unused);
+        if (l.tangent >= 0) load_records(from(tangents), c.tangent.x, c.tangent.y, c.tangent.z, c.tangent.w);
+        if (l.color >= 0) load_records(from(colors), c.color.x, c.color.y, c.color.z, c.color.w);
+        for (int set = 0; set < kMaxUvSets; ++set) {
+            c.uv[set] = {zero, zero};
+            if (l.uv[set] >= 0) load_records(from(uvs[set]), c.uv[set].x, c.uv[set].y, unused, unused2);
+        }
+    }
+};
+
+// The layouts that most scenes have are constants of the code, which then keeps all planes in
+// registers; the others are read from the job.
+struct NormalOnly {
+    static constexpr SurfaceLayout kLayout{.count = 4, .normal = 1};
+    template <class Job>
+    static TESSERA_INLINE constexpr const SurfaceLayout& layout(const Job&) {
+        return kLayout;
+    }
+};
+struct NormalAndUv {
+    static constexpr SurfaceLayout kLayout{.count = 6, .normal = 1, .uv = {4, -1, -1, -1}};
+    template <class Job>
+    static TESSERA_INLINE constexpr const SurfaceLayout& layout(const Job&) {
+        return kLayout;
+    }
+};
+struct ColorOnly {
+    static constexpr SurfaceLayout kLayout{.count = 5, .color = 1};
+    template <class Job>
+    static TESSERA_INLINE constexpr const SurfaceLayout& layout(const Job&) {
+        return kLayout;
+    }
+};
+struct AnyLayout {
+    template <class Job>
+    static TESSERA_INLINE const SurfaceLayout& layout(const Job& job) {
+        return job.layout;
+    }
+};
+
+template <class Kind>
+inline void make_surfaces_as(const SurfaceJob& job) {
+    constexpr std::uint32_t kWidth = kLanes<Float>;
+    const InstanceView& instance = *job.instance;
+    const ProjectionView& picture = job.source->projection;
+    const SurfaceLayout& layout = Kind::layout(job);
+    const int floats = surface_floats(layout);
+    const CornerArrays arrays(instance.mesh, layout);
+    for (std::uint32_t t = 0; t < job.count; t += kWidth) {
+        float* const records = job.records + std::size_t{t} * static_cast<std::size_t>(floats);
+        Corner<Float> corners[3];
+        ClipVertex<Float> clip[3];
+        PictureVertex<Float> p[3];
+        Uint some(0u);
+        for (int k = 0; k < 3; ++k) {
+            std::uint32_t vertex[kMaxLanes];
+            for (std::uint32_t lane = 0; lane < kWidth; ++lane) {
+                const std::uint32_t n = t + lane < job.count ? t + lane : job.count - 1;
+                vertex[lane] = instance.mesh.triangles[3 * std::size_t{job.triangles[n]} + static_cast<std::size_t>(k)];
+            }
+            arrays.load(layout, vertex, corners[k]);
+            clip[k] = to_clip(instance.object_to_clip, corners[k].position);
+            some |= out_code(clip[k]);
+            p[k] = to_picture(clip[k], picture.width, picture.height);
+        }
+        const Mask clipped = (some & Uint(kMustClip)) != Uint(0u);
+        // Lanes that are clipped are made again; until then their coordinates must not overflow.
+        for (int k = 0; k < 3; ++k) {
+            p[k].snapped_x = select(clipped, Int(0), p[k].snapped_x);
+            p[k].snapped_y = select(clipped, Int(0), p[k].snapped_y);
+        }
+        // Facing as the exact area says: where float leaves a doubt, the scalar path decides.
+        const Float forth = to_float(p[1].snapped_x - p[0].snapped_x) * to_float(p[2].snapped_y - p[0].snapped_y);
+        const Float back = to_float(p[2].snapped_x - p[0].snapped_x) * to_float(p[1].snapped_y - p[0].snapped_y);
+        const Float area = forth - back;
+        const Mask certain = abs(area) > (abs(forth) + abs(back)) * Float(1e-6f);
+        // Negative: counter-clockwise as a viewer sees it.
+        const Float front = select(area < Float(0.0f), Float(instance.handedness), Float(-instance.handedness));
+        Float numbers[kMaxSurfaceFloats];
+        numbers[floats - 1] = numbers[floats - 2] = numbers[floats - 3] = Float(0.0f);
+        make_planes(instance, layout, corners, clip, p, front, [&](int i, Float v) { numbers[i] = v; });
+        for (int i = 0; i < floats; i += 4)
+            store_records([&](int lane) { return records + lane * floats + i; }, numbers[i], numbers[i + 1],
+                          numbers[i + 2], numbers[i + 3]);
+        std::uint32_t again = mask_bits(clipped | !certain);
+        for (; again; again &= again - 1) {
+            const auto lane = static_cast<std::uint32_t>(__builtin_ctz(again));
+            if (t + lane < job.count)
+                job.source->make_record(instance, job.triangles[t + lane], picture, job.layout,
+                                        records + static_cast<int>(lane) * floats);
+        }
+    }
+}
+
+inline void make_surfaces(const SurfaceJob& job) {
+    if (job.layout == NormalOnly::kLayout) return make_surfaces_as<NormalOnly>(job);
+    if (job.layout == NormalAndUv::kLayout) return make_surfaces_as<NormalAndUv>(job);
+    make_surfaces_as<AnyLayout>(job);
+}
+
+// Where the alpha of one triangle's material says that nothing is there.
+TESSERA_INLINE Mask cut_out(const SurfaceSource& source, std::uint32_t instance, const SurfaceLayout& layout,
+                            const float* record, Float x, Float y) {
+    const MaterialView& material = source.shading->materials[source.instances[instance].material];
+    SurfaceSample<Float> sample;
+    sample_planes(layout, x, y, [record](int i) { return Float(record[i]); }, sample);
+    const SurfacePoint<Float> s =
+        surface_point(layout, PictureRays(source.projection), sample, x, y, Float(record[2]), Float(record[3]),
+                      source.shading->footprint_scale);
+    return base_color(material, s).w < Float(material.alpha_cutoff);
+}
+
+}  // namespace tessera::TESSERA_ISA_NAMESPACE
