@@ -84,8 +84,8 @@ struct RenderOptions {
     int threads = 0;  // 0: what the process may use
     Isa isa = Isa::kAuto;
 
-    // Planes wanted; labels (depth, primitive) are taken at the pixel centre. Nothing is shaded for a
-    // picture without colour and linear planes.
+    // Planes wanted; labels (depth, primitive) are taken at the pixel centre. Without colour and linear
+    // planes nothing is shaded, and the statistics count the labels.
     bool want_color = true, want_linear = false, want_depth = false, want_primitive = false;
 
     std::uint64_t max_bytes = std::uint64_t{4} << 30;  // memory that rendering may take
@@ -105,10 +105,10 @@ struct RenderStats {
     // tested for depth; blocks of 8x8 pixels filled, and left out by hierarchical Z.
     std::uint64_t culled_no_sample = 0, small_triangles = 0, large_triangles = 0;
     std::uint64_t samples_tested = 0, blocks_drawn = 0, blocks_hidden = 0;
-    std::uint64_t pixels_covered = 0;                       // with at least one sample hit; filtered: of alpha > 0
-    std::uint64_t fragments_passed = 0;                     // samples that passed the depth test (raster), hits (trace)
-    std::uint64_t color_hash = 0;                           // hash_pixels() of the colour plane, by render() only
-    double exposure = 1;                                    // factor on radiance
+    std::uint64_t pixels_covered = 0;    // with at least one sample hit, or labelled; filtered: of alpha > 0
+    std::uint64_t fragments_passed = 0;  // samples that passed the depth test (raster), hits (trace)
+    std::uint64_t color_hash = 0;        // hash_pixels() of the colour plane, by render() only
+    double exposure = 1;                 // factor on radiance
     std::vector<std::pair<std::string, double>> phases_ms;  // wall time by phase, in order
     double frame_ms = 0, cpu_ms = 0;
 };

@@ -24,9 +24,8 @@ T* make_plane(bool wanted, const RenderOptions& options, PixelFormat format, Ima
 
 Canvas::Canvas(const RenderOptions& options) : options_(options) {
     const auto pixels = static_cast<std::size_t>(options.width) * static_cast<std::size_t>(options.height);
-    hit_.assign(pixels, 0);
-    if (!options.want_color && !options.want_linear) return;
     sums_.assign(4 * pixels, 0.0f);
+    hit_.assign(pixels, 0);
     if (options.filter != PixelFilter::kBox) filter_.emplace(options, nullptr);
 }
 
@@ -41,7 +40,7 @@ void Canvas::take_sample(int sample, ReferenceEngine& engine, const Visibility& 
         while (transparent != end && transparent->pixel == pixel) ++transparent;
         if (seen.triangle[pixel] == 0 && first == transparent) continue;
         hit_[pixel] = 1;
-        if (!sums_.empty()) add(pixel, engine.shade_sample(seen, pixel, offset, first, transparent));
+        add(pixel, engine.shade_sample(seen, pixel, offset, first, transparent));
     }
     if (!filter_) return;
     for (float& value : sums_) value = without_nan(value);
@@ -56,8 +55,7 @@ void Canvas::develop(const FilmView& film, const RasterTargets& targets, RenderS
         return;
     }
     for (const char hit : hit_) stats.pixels_covered += hit != 0;
-    if (!sums_.empty())
-        develop_picture(sums_.data(), 1.0f / static_cast<float>(options_.samples), film, options_, nullptr, targets);
+    develop_picture(sums_.data(), 1.0f / static_cast<float>(options_.samples), film, options_, nullptr, targets);
 }
 
 void develop_picture(const float* sums, float weight, const FilmView& film, const RenderOptions& options, Arena* arena,
@@ -82,7 +80,7 @@ void develop_picture(const float* sums, float weight, const FilmView& film, cons
     });
 }
 
-void take_labels(ReferenceEngine& engine, const RunControl& control, const RasterTargets& targets) {
+LabelCounts take_labels(ReferenceEngine& engine, const RunControl& control, const RasterTargets& targets) {
     const SamplePosition centre{128, 128};
     const Visibility seen = engine.see(centre, control);
     std::vector<std::uint32_t> nearest = seen.triangle;
@@ -93,8 +91,10 @@ void take_labels(ReferenceEngine& engine, const RunControl& control, const Raste
                                 256 * static_cast<std::int32_t>(f.pixel / width) + centre.y};
         if (engine.sampler().alpha(f.triangle, at) >= 0.5f) nearest[f.pixel] = f.triangle + 1;
     }
+    LabelCounts counts{seen.counters, 0};
+    for (const std::uint32_t t : nearest) counts.pixels += t != 0;
     if (targets.triangle) std::copy(nearest.begin(), nearest.end(), targets.triangle);
-    if (!targets.distance) return;
+    if (!targets.distance) return counts;
     for (std::size_t i = 0; i < nearest.size(); ++i) {
         const auto width = static_cast<std::size_t>(seen.width);
         const SamplePosition at{256 * static_cast<std::int32_t>(i % width) + centre.x,
@@ -102,6 +102,7 @@ void take_labels(ReferenceEngine& engine, const RunControl& control, const Raste
         targets.distance[i] =
             nearest[i] == 0 ? std::numeric_limits<float>::infinity() : engine.sampler().distance(nearest[i] - 1, at);
     }
+    return counts;
 }
 
 void add_counters(RenderStats& stats, const VisibilityCounters& counters, bool first) {
@@ -112,6 +113,11 @@ void add_counters(RenderStats& stats, const VisibilityCounters& counters, bool f
     stats.culled_backface = counters.culled_backface;
     stats.culled_degenerate = counters.culled_degenerate;
     stats.clipped = counters.clipped;
+}
+
+void add_counters(RenderStats& stats, const LabelCounts& counts) {
+    add_counters(stats, counts.counters, true);
+    stats.pixels_covered = counts.pixels;
 }
 
 void add_counters(RenderStats& stats, const RasterCounters& counters, bool first) {

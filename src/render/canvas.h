@@ -17,8 +17,7 @@ class Canvas {
   public:
     explicit Canvas(const RenderOptions& options);
 
-    // Takes sample `sample` of every pixel: shades what was seen at `offset`, if any colour is wanted, and
-    // adds it to the picture.
+    // Takes sample `sample` of every pixel: shades what was seen at `offset` and adds it to the picture.
     void take_sample(int sample, ReferenceEngine& engine, const Visibility& seen, SamplePosition offset,
                      const std::function<void(double)>& checkpoint);
 
@@ -45,14 +44,22 @@ class Canvas {
 void develop_picture(const float* sums, float weight, const FilmView& film, const RenderOptions& options, Arena* arena,
                      const RasterTargets& targets);
 
+// What the pass of the labels saw, and how many pixels it labelled.
+struct LabelCounts {
+    VisibilityCounters counters;
+    std::uint64_t pixels;
+};
+
 // Depth and primitive planes, at the pixel centre, of the nearest surface with alpha of at least one
 // half.
-void take_labels(ReferenceEngine& engine, const RunControl& control, const RasterTargets& targets);
+LabelCounts take_labels(ReferenceEngine& engine, const RunControl& control, const RasterTargets& targets);
 
 // Adds a pass' counters to the statistics. The culling counters are those of the first pass: the
 // others cull the same triangles again.
 void add_counters(RenderStats& stats, const VisibilityCounters& counters, bool first);
 void add_counters(RenderStats& stats, const RasterCounters& counters, bool first);
+// Of a picture of labels alone.
+void add_counters(RenderStats& stats, const LabelCounts& counts);
 
 // The planes that the options ask for, made where `result` does not have them yet; the others are let go.
 RasterTargets make_planes(const RenderOptions& options, RenderResult& result);

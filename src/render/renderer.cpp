@@ -72,7 +72,7 @@ void Renderer::Impl::draw(const View& view, RenderResult& result) {
 // The tile rasterizer: visibility, shading and film inside each tile. With a filter that is wider than
 // the pixel, linear pictures of one sample each, and the film after the last of them.
 void Renderer::Impl::draw_tiles(const Watchdog& watchdog, Stopwatch& watch, RenderResult& result) {
-    RasterTargets targets = make_planes(options, result);
+    const RasterTargets targets = make_planes(options, result);
     RasterSettings settings = raster_settings(options, shading.film(options), watchdog.control(0, 1));
     result.stats.isa = settings.isa;
     result.stats.threads = arena.threads();
@@ -109,23 +109,26 @@ void Renderer::Impl::draw_reference(const Watchdog& watchdog, Stopwatch& watch, 
     const RasterTargets targets = make_planes(options, result);
     watch.phase("build");
 
-    Canvas canvas(options);
-    const std::vector<SamplePosition> positions = sample_positions(options);
-    for (int sample = 0; sample < options.samples; ++sample) {
-        const SamplePosition offset = positions[static_cast<std::size_t>(sample)];
-        const Visibility seen = engine.see(offset, watchdog.control(2 * sample, 2 * options.samples));
-        add_counters(result.stats, seen.counters, sample == 0);
-        watch.phase("visibility");
-        canvas.take_sample(sample, engine, seen, offset,
-                           watchdog.control(2 * sample + 1, 2 * options.samples).checkpoint);
-        watch.phase("shading");
+    if (targets.colors()) {
+        Canvas canvas(options);
+        const std::vector<SamplePosition> positions = sample_positions(options);
+        for (int sample = 0; sample < options.samples; ++sample) {
+            const SamplePosition offset = positions[static_cast<std::size_t>(sample)];
+            const Visibility seen = engine.see(offset, watchdog.control(2 * sample, 2 * options.samples));
+            add_counters(result.stats, seen.counters, sample == 0);
+            watch.phase("visibility");
+            canvas.take_sample(sample, engine, seen, offset,
+                               watchdog.control(2 * sample + 1, 2 * options.samples).checkpoint);
+            watch.phase("shading");
+        }
+        canvas.develop(shading.film(options), targets, result.stats);
+        watch.phase("film");
     }
-    if (targets.distance || targets.triangle) {
-        take_labels(engine, watchdog.control(0, 0), targets);
+    if (targets.labels()) {
+        const LabelCounts labels = take_labels(engine, watchdog.control(0, targets.colors() ? 0 : 1), targets);
+        if (!targets.colors()) add_counters(result.stats, labels);
         watch.phase("labels");
     }
-    canvas.develop(shading.film(options), targets, result.stats);
-    watch.phase("film");
 }
 
 Renderer::~Renderer() = default;
