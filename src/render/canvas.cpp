@@ -135,6 +135,7 @@ void add_counters(RenderStats& stats, const RasterCounters& counters, bool first
     stats.small_triangles = counters.front.small;
     stats.large_triangles = counters.front.large;
     stats.pixels_covered = counters.pixels_covered;
+    stats.tile_side = counters.tile_side;
 }
 
 RasterTargets make_planes(const RenderOptions& options, RenderResult& result) {

@@ -18,10 +18,18 @@ namespace {
 constexpr std::size_t kMostFragmentsPerTile = 512 * 64 * 64;
 
 // Depth, triangle and colour of every pixel while it is made, and the finished colour; a wide filter's
-// sums and its flag.
+// sums and its flag; a stage's numbers.
 std::uint64_t picture_bytes(const RenderOptions& o) {
     const auto pixels = static_cast<std::uint64_t>(o.width) * static_cast<std::uint64_t>(o.height);
-    return pixels * (4 + 4 + 16 + 4 + (o.filter == PixelFilter::kBox ? 0 : 16 + 1));
+    return pixels * (4 + 4 + 16 + 4 + (o.filter == PixelFilter::kBox ? 0 : 16 + 1) + (o.show == Stage::kPicture ? 0 : 4));
+}
+
+void check_stage(const RenderOptions& o) {
+    if (o.show > Stage::kCost) refuse("unknown stage");
+    if (o.show == Stage::kPicture) return;
+    if (o.engine != Engine::kRaster) refuse(std::string(name(o.engine)) + " has no tiles: no stage to show");
+    if (o.filter != PixelFilter::kBox) refuse("stages are shown with the box filter only");
+    if (!o.want_color) refuse("stages are shown in the colour plane, which is not wanted");
 }
 
 }  // namespace
@@ -54,6 +62,7 @@ void check_options(const RenderOptions& o) {
         for (const float c : {o.background->x, o.background->y, o.background->z, o.background->w})
             if (!(c >= 0.0f && c <= 1.0f)) refuse("background components must be 0 to 1");
     if (o.filter > PixelFilter::kMitchell) refuse("unknown filter");
+    check_stage(o);
     resolve_isa(o.isa);
     const auto pixels = static_cast<std::uint64_t>(o.width) * static_cast<std::uint64_t>(o.height);
     if (picture_bytes(o) > o.max_bytes)

@@ -9,6 +9,7 @@
 #include "render/canvas.h"
 #include "render/options.h"
 #include "render/shading_scene.h"
+#include "render/stage_picture.h"
 #include "render/stopwatch.h"
 
 namespace tessera {
@@ -80,7 +81,12 @@ void Renderer::Impl::draw_tiles(const Watchdog& watchdog, Stopwatch& watch, Rend
         add_counters(result.stats, raster.draw(frame, shading.context(), settings, to, arena), first);
         watch.phase("tiles");
     };
-    if (!filter) return draw(targets, true);
+    settings.inspection = make_stage_plane(options, result);
+    if (!filter) {
+        draw(targets, true);
+        if (options.show != Stage::kPicture) paint_stage(options.show, result.stats.tile_side, result);
+        return;
+    }
 
     filter->restart();
     const std::vector<SamplePosition> positions = std::move(settings.samples);

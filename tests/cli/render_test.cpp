@@ -9,6 +9,7 @@
 #include <simdjson.h>
 
 #include <algorithm>
+#include <tuple>
 
 namespace {
 
@@ -160,6 +161,32 @@ TEST_F(CliRender, RAS7_FiltersGiveTheLibrarysPictures) {
     EXPECT_EQ(std::adjacent_find(hashes.begin(), hashes.end()), hashes.end()) << "two filters, one picture";
 }
 
+TEST_F(CliRender, ShowsTheStagesAndSaysTheirMost) {
+    using tessera::Stage;
+    const tessera::Scene box = tessera::load_scene(scene("cornell-box.gltf"));
+    const std::tuple<const char*, Stage, std::string> stages[] = {
+        {"bins", Stage::kBins, " triangles in a tile of 64x64\n"},
+        {"hiz", Stage::kHiZ, " (0 is far)\n"},
+        {"overdraw", Stage::kOverdraw, " samples tested in a pixel of 1\n"},
+        {"cost", Stage::kCost, " cycles, estimated, in a tile of 64x64\n"}};
+    for (const auto& [name, stage, line] : stages) {
+        const Outcome run = render({"-o", in_folder("a.png"), "--show", name});
+        ASSERT_EQ(run.code, 0) << run.err;
+        tessera::RenderOptions options;
+        options.width = 64, options.height = 48, options.samples = 1, options.show = stage;
+        const tessera::RenderResult result = tessera::render(box, options);
+        EXPECT_EQ(tessera::hash_pixels(tessera::read_image(in_folder("a.png"))), result.stats.color_hash) << name;
+        EXPECT_EQ(run.err.rfind("tessera: " + std::string(name) + ": ", 0), 0u) << run.err;
+        EXPECT_NE(run.err.find(line), std::string::npos) << run.err;
+        if (stage != Stage::kHiZ) {
+            const std::uint32_t* n = result.stage.data<std::uint32_t>();
+            const std::string most = "at most " + std::to_string(*std::max_element(n, n + 64 * 48)) + " ";
+            EXPECT_NE(run.err.find(most), std::string::npos) << run.err;
+        }
+        EXPECT_EQ(render({"-o", in_folder("a.png"), "--show", name, "--quiet"}).err, "");
+    }
+}
+
 TEST_F(CliRender, FB1_ColorBitsLimitTheLevels) {
     ASSERT_EQ(render({"-o", in_folder("a.png"), "--color-bits", "3-3-2"}).code, 0);
     const tessera::Image image = tessera::read_image(in_folder("a.png"));
@@ -188,6 +215,9 @@ TEST_F(CliRender, UsageErrorsExitWith2AndNameTheOption) {
         {{"-o", out, "--samples", "0"}, "--samples"},
         {{"-o", out, "--samples", "4x"}, "--samples"},
         {{"-o", out, "--filter", "lanczos"}, "--filter"},
+        {{"-o", out, "--show", "triangles"}, "--show"},
+        {{"-o", out, "--show", "bins", "--engine", "reference-raster"}, "--show: needs --engine raster"},
+        {{"-o", out, "--show", "cost", "--filter", "tent"}, "--show: needs --filter box"},
         {{"-o", out, "--eye", "1,2"}, "--eye"},
         {{"-o", out, "--target", "1,2,3"}, "--target"},
         {{"-o", out, "--camera", "0", "--eye", "1,2,3"}, "--camera"},

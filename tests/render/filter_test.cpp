@@ -21,8 +21,6 @@ RenderOptions filtered(PixelFilter filter, int width, int height, int samples) {
     return o;
 }
 
-Scene scene_file(const char* name) { return load_scene(std::string(TESSERA_SOURCE_DIR) + "/scenes/" + name); }
-
 // A wall that ends at x = `edge` pixels of a picture 16 pixels wide.
 Scene half_plane(double edge, const Material& material) {
     Scene scene;
