@@ -71,11 +71,11 @@ struct RenderOptions {
     Encoding encoding = Encoding::kSrgb;                // of the colour plane
     std::optional<Vec4> background = Vec4{1, 1, 1, 1};  // RGB as the colour plane stores it, alpha; unset: transparent
     RasterTuning raster;
-    int threads = 0;                                    // 0: what the process may use
+    int threads = 0;  // 0: what the process may use
     Isa isa = Isa::kAuto;
 
-    // Planes wanted; labels (depth, primitive) are taken at the pixel centre. Nothing is shaded for a
-    // picture without colour and linear planes.
+    // Planes wanted; labels (depth, primitive) are taken at the pixel centre. Without colour and linear
+    // planes nothing is shaded, and the statistics count the labels.
     bool want_color = true, want_linear = false, want_depth = false, want_primitive = false;
 
     std::uint64_t max_bytes = std::uint64_t{4} << 30;  // memory that rendering may take
@@ -95,7 +95,7 @@ struct RenderStats {
     // tested for depth; blocks of 8x8 pixels filled, and left out by hierarchical Z.
     std::uint64_t culled_no_sample = 0, small_triangles = 0, large_triangles = 0;
     std::uint64_t samples_tested = 0, blocks_drawn = 0, blocks_hidden = 0;
-    std::uint64_t pixels_covered = 0;                       // with at least one sample hit
+    std::uint64_t pixels_covered = 0;                       // with at least one sample hit, or labelled
     std::uint64_t fragments_passed = 0;                     // samples that passed the depth test (raster), hits (trace)
     std::uint64_t color_hash = 0;                           // hash_pixels() of the colour plane, by render() only
     double exposure = 1;                                    // factor on radiance

@@ -85,6 +85,7 @@ inline void setup(SetupJob& job) {
     const TransformedVertex* const vertices = job.vertices - job.vertex_base;
     std::uint32_t rest_indices[3 * kWidth];
     alignas(64) std::int32_t vx[3][kWidth], vy[3][kWidth], tile_x[2][kWidth], tile_y[2][kWidth];
+    alignas(64) std::int32_t tiles[kWidth];
     for (std::uint32_t t = 0; t < job.count; t += kWidth) {
         const std::uint32_t left = job.count - t;
         const Mask valid = first_n<Float>(left < std::uint32_t{kWidth} ? static_cast<int>(left) : kWidth);
@@ -174,10 +175,26 @@ inline void setup(SetupJob& job) {
             if (small) {
                 store_records([&](int i) { return made[i] + 8; }, as_float(rows[0]),
                               as_float(rows[1]), as_float(number), as_float(Uint(job.instance_index)));
-                store(tile_x[0], box.left >> job.tile_shift);
-                store(tile_y[0], box.top >> job.tile_shift);
-                store(tile_x[1], box.right >> job.tile_shift);
-                store(tile_y[1], box.bottom >> job.tile_shift);
+                const Int first_x = box.left >> job.tile_shift, first_y = box.top >> job.tile_shift;
+                const Int last_tile_x = box.right >> job.tile_shift, last_tile_y = box.bottom >> job.tile_shift;
+                const Int tile = first_y * Int(job.tile_columns) + first_x;
+                const Mask spread = (first_x != last_tile_x) | (first_y != last_tile_y);
+                const int any_small = __builtin_ctz(small);
+                store(tiles, tile);
+                if (small == (kept | slow) && !(mask_bits(spread | (tile != Int(tiles[any_small]))) & small)) {
+                    // All of them small and in one tile, as most often.
+                    ChunkArrays& c = job.arrays;
+                    const auto count = static_cast<std::uint32_t>(__builtin_popcount(small));
+                    add_run(c, static_cast<std::uint32_t>(tiles[any_small]), c.small_count, count);
+                    for (std::uint32_t rest = small; rest; rest &= rest - 1)
+                        __builtin_memcpy(&c.small[c.small_count++], made[__builtin_ctz(rest)], sizeof(SmallTriangle));
+                    job.counters.small += count;
+                    continue;
+                }
+                store(tile_x[0], first_x);
+                store(tile_y[0], first_y);
+                store(tile_x[1], last_tile_x);
+                store(tile_y[1], last_tile_y);
             }
             if (kept & ~small)
                 for (int k = 0; k < 3; ++k) {

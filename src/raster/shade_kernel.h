@@ -54,34 +54,34 @@ TESSERA_INLINE void blend_samples(const SurfaceLayout& l, Mask mask, const Surfa
     }
 }
 
-// The sample of each lane's own triangle. `place` is where the lanes' records start; `used` the lanes
-// that count, at least one.
+// The sample of each lane's own triangle. `used` are the lanes that count, at least one.
 template <class Kind>
-TESSERA_INLINE void sample_lanes(const ShadeJob& job, const Uint& place, std::uint32_t used, Float x, Float y,
+TESSERA_INLINE void sample_lanes(const ShadeJob& job, const Uint& ordinals, std::uint32_t used, Float x, Float y,
                                  SurfaceSample<Float>& sample, Float& side, Float& sign) {
     constexpr int kWidth = kLanes<Float>;
     const SurfaceLayout& l = Kind::layout(job);
-    alignas(64) std::uint32_t places[kWidth];
-    store(places, place);
+    alignas(64) std::uint32_t ordinal[kWidth];
+    store(ordinal, ordinals);
+    const auto record_of = [&](int lane) { return job.records + job.record_of[ordinal[lane]]; };
     const auto sample_of = [&](const float* record, SurfaceSample<Float>& out) {
         sample_planes(l, x, y, [record](int i) { return Float(record[i]); }, out);
     };
     // The few triangles that the lanes show, and who shows them.
-    std::uint32_t first[kFew] = {}, rest = used;
+    int first[kFew] = {}, few = 0;
+    std::uint32_t rest = used;
     Mask shows[kFew];
-    int few = 0;
     for (; few < kFew && rest; ++few) {
-        first[few] = places[__builtin_ctz(rest)];
-        shows[few] = place == Uint(first[few]);
+        first[few] = __builtin_ctz(rest);
+        shows[few] = ordinals == Uint(ordinal[first[few]]);
         rest &= ~mask_bits(shows[few]);
     }
     if (!rest) {
-        const float* record = job.records + first[0];
+        const float* record = record_of(first[0]);
         sample_of(record, sample);
         side = Float(record[2]);
         sign = Float(record[3]);
         for (int n = 1; n < few; ++n) {
-            record = job.records + first[n];
+            record = record_of(first[n]);
             SurfaceSample<Float> other;
             sample_of(record, other);
             blend_samples(l, shows[n], other, sample);
@@ -92,8 +92,10 @@ TESSERA_INLINE void sample_lanes(const ShadeJob& job, const Uint& place, std::ui
     }
     Float numbers[kMaxSurfaceFloats];
     const int floats = surface_floats(l);
+    const float* records[kWidth];
+    for (int lane = 0; lane < kWidth; ++lane) records[lane] = record_of(lane);
     for (int i = 0; i < floats; i += 4)
-        load_records([&](int lane) { return job.records + places[lane] + i; }, numbers[i], numbers[i + 1],
+        load_records([&](int lane) { return records[lane] + i; }, numbers[i], numbers[i + 1],
                      numbers[i + 2], numbers[i + 3]);
     sample_planes(l, x, y, [&numbers](int i) { return numbers[i]; }, sample);
     side = numbers[2];
@@ -101,11 +103,11 @@ TESSERA_INLINE void sample_lanes(const ShadeJob& job, const Uint& place, std::ui
 }
 
 template <class Kind>
-TESSERA_INLINE ShadedPoint<Float> shade_lanes(const Batch& batch, const Uint& place, std::uint32_t used, Float x,
+TESSERA_INLINE ShadedPoint<Float> shade_lanes(const Batch& batch, const Uint& ordinals, std::uint32_t used, Float x,
                                               Float y) {
     SurfaceSample<Float> sample;
     Float side, sign;
-    sample_lanes<Kind>(batch.job, place, used, x, y, sample, side, sign);
+    sample_lanes<Kind>(batch.job, ordinals, used, x, y, sample, side, sign);
     const SurfacePoint<Float> s = surface_point(Kind::layout(batch.job), batch.rays, sample, x, y, side, sign,
                                                 batch.context.footprint_scale);
     return shade<Kind::kTextured>(batch.context, batch.material, s,
@@ -156,7 +158,7 @@ inline void shade_tile_as(const ShadeJob& job) {
         }
         const Mask covered = ordinals != Uint(0u);
         const ShadedPoint<Float> c =
-            shade_lanes<Kind>(batch, gather(job.record_of, as_int(ordinals)), used, x, y);
+            shade_lanes<Kind>(batch, ordinals, used, x, y);
         const auto add = [&](float* plane, Float v) {
             const Float before = job.first ? zero : load<Float>(plane + at);
             store(plane + at, before + select(covered, v, zero));
@@ -174,7 +176,7 @@ inline void shade_points_as(const ShadeJob& job) {
     const Batch batch(job);
     for_each_batch(job, [&](const Uint& ordinals, std::uint32_t used, Float x, Float y, int at) {
         const ShadedPoint<Float> c =
-            shade_lanes<Kind>(batch, gather(job.record_of, as_int(ordinals)), used, x, y);
+            shade_lanes<Kind>(batch, ordinals, used, x, y);
         store(job.r + at, c.radiance.x);
         store(job.g + at, c.radiance.y);
         store(job.b + at, c.radiance.z);

@@ -123,10 +123,16 @@ void Tile::clear_depth() {
     std::fill(depth_.begin(), depth_.end(), 0.0f);
     std::fill(floor_.begin(), floor_.end(), 0.0f);
     if (width_ == side_ && height_ == side_) return;
-    for (std::uint32_t pixel = 0; pixel < depth_.size(); ++pixel) {
-        const TilePixel p(pixel, side_);
-        if (p.x >= width_ || p.y >= height_) depth_[pixel] = std::numeric_limits<float>::infinity();
-        if (pixel % kBlockPixels == 0) floor_[pixel / kBlockPixels] = depth_[pixel];
+    constexpr float kInfinity = std::numeric_limits<float>::infinity();
+    const int blocks = side_ / kBlockSide;
+    for (int block = 0; block < blocks * blocks; ++block) {
+        const int columns = width_ - block % blocks * kBlockSide, rows = height_ - block / blocks * kBlockSide;
+        if (columns >= kBlockSide && rows >= kBlockSide) continue;
+        const auto b = static_cast<std::size_t>(block);
+        if (columns <= 0 || rows <= 0) floor_[b] = kInfinity;
+        float* const depth = depth_.data() + b * kBlockPixels;
+        for (int i = 0; i < kBlockPixels; ++i)
+            if (i % kBlockSide >= columns || i / kBlockSide >= rows) depth[i] = kInfinity;
     }
 }
 
@@ -409,7 +415,8 @@ void Tile::fill_background() {
 }
 
 void Tile::develop() {
-    for (const std::uint64_t block : hit_) pixels_covered += static_cast<std::uint64_t>(std::popcount(block));
+    for (const std::uint64_t block : hit_)
+        if (block) pixels_covered += static_cast<std::uint64_t>(std::popcount(block));
     const std::size_t picture_width = static_cast<std::size_t>(task_->frame.projection.width);
     const float weight = 1.0f / static_cast<float>(task_->settings.samples.size());
     if (task_->targets.rgba) {

@@ -74,7 +74,7 @@ struct LargeFill {
 enum class FillKind { kOpaque, kCutOut, kBlend };
 
 // One block: `inside` says that no edge needs a look.
-template <FillKind kKind>
+template <FillKind kKind, bool kCount>
 TESSERA_INLINE void fill_block(VisibilityJob& job, const LargeFill& f, int block_x, int block_y, bool inside,
                                const float* record, const SurfaceLayout* layout) {
     const int block = block_y * (job.side / kBlockSide) + block_x;
@@ -107,7 +107,7 @@ TESSERA_INLINE void fill_block(VisibilityJob& job, const LargeFill& f, int block
                 covered = or3(e[0][j], e[1][j], e[2][j]) > Int(-1);
                 for (int k = 0; k < 3; ++k) e[k][j] += step[k];
             }
-            if (job.count) {
+            if constexpr (kCount) {
                 const Mask counted = covered & (before < Float(3.4e38f));
                 job.counters.samples_covered += static_cast<std::uint64_t>(__builtin_popcount(mask_bits(counted)));
                 if (job.overdraw) {
@@ -138,7 +138,7 @@ TESSERA_INLINE void fill_block(VisibilityJob& job, const LargeFill& f, int block
                 store_masked(depth + at, pass, z);
                 store_masked(ordinal + at, pass, Uint(f.ordinal));
                 low = min(low, select(pass, z, before));
-                if (job.count)
+                if constexpr (kCount)
                     job.counters.fragments_passed += static_cast<std::uint64_t>(__builtin_popcount(mask_bits(pass)));
             }
         }
@@ -148,7 +148,7 @@ TESSERA_INLINE void fill_block(VisibilityJob& job, const LargeFill& f, int block
 }
 
 // Classifies as many blocks at a time as there are lanes, then fills those that are left.
-template <FillKind kKind>
+template <FillKind kKind, bool kCount>
 TESSERA_INLINE void fill_blocks(VisibilityJob& job, const LargeFill& f, const float* record,
                                 const SurfaceLayout* layout) {
     constexpr int kWidth = kLanes<Float>;
@@ -196,9 +196,9 @@ TESSERA_INLINE void fill_blocks(VisibilityJob& job, const LargeFill& f, const fl
         for (; rest; rest &= rest - 1) {
             const int i = __builtin_ctz(rest), block = group + i;
             if (full >> i & 1)
-                fill_block<kKind>(job, f, block & (blocks - 1), block >> shift, true, record, layout);
+                fill_block<kKind, kCount>(job, f, block & (blocks - 1), block >> shift, true, record, layout);
             else
-                fill_block<kKind>(job, f, block & (blocks - 1), block >> shift, false, record, layout);
+                fill_block<kKind, kCount>(job, f, block & (blocks - 1), block >> shift, false, record, layout);
         }
     }
 }
@@ -213,9 +213,10 @@ __attribute__((noinline)) void fill_special(VisibilityJob& job, const LargeFill&
         layout = layout_of(*job.source, instance);
         make_surfaces({job.source, &instance, layout, &f.t.triangle, 1, record});
     }
-    fill_blocks<kKind>(job, f, record, &layout);
+    fill_blocks<kKind, true>(job, f, record, &layout);
 }
 
+template <bool kCount>
 TESSERA_INLINE void fill_large(VisibilityJob& job, const LargeTriangle& t, std::uint32_t ordinal) {
     LargeFill f{t, ordinal, {}, 256 * job.x0 + job.offset.x, 256 * job.y0 + job.offset.y};
     for (int k = 0; k < 3; ++k)
@@ -223,7 +224,7 @@ TESSERA_INLINE void fill_large(VisibilityJob& job, const LargeTriangle& t, std::
     const MaterialView& material = job.source->shading->materials[job.source->instances[t.instance].material];
     switch (material.alpha_mode) {
         case AlphaMode::kOpaque:
-            return fill_blocks<FillKind::kOpaque>(job, f, nullptr, nullptr);
+            return fill_blocks<FillKind::kOpaque, kCount>(job, f, nullptr, nullptr);
         case AlphaMode::kMask:
             return fill_special<FillKind::kCutOut>(job, f);
         case AlphaMode::kBlend:
@@ -231,13 +232,22 @@ TESSERA_INLINE void fill_large(VisibilityJob& job, const LargeTriangle& t, std::
     }
 }
 
-// Where pixel (x, y) of a tile lies: column_place(x) + row_place(y).
-TESSERA_INLINE std::int32_t column_place(std::int32_t x) { return (x & -kBlockSide) << 3 | (x & (kBlockSide - 1)); }
-TESSERA_INLINE std::int32_t row_place(std::int32_t y, int side) {
-    return (y & -kBlockSide) * side + ((y & (kBlockSide - 1)) << 3);
-}
+// Where the pixels of a tile lie: pixel (x, y) at column[x] + row[y].
+struct PixelPlaces {
+    std::int32_t column[kMaxTileSide], row[kMaxTileSide];
 
-TESSERA_INLINE void fill_small(VisibilityJob& job, const SmallTriangle& t, std::uint32_t ordinal) {
+    TESSERA_INLINE explicit PixelPlaces(int side) {
+        for (int i = 0; i < side; ++i) {
+            column[i] = (i & -kBlockSide) << 3 | (i & (kBlockSide - 1));
+            row[i] = (i & -kBlockSide) * side + ((i & (kBlockSide - 1)) << 3);
+        }
+    }
+};
+
+// Pixel by pixel of its mask. Steps of whole pixels are exact in float, so z is the plane's value.
+template <bool kCount>
+TESSERA_INLINE void fill_small(VisibilityJob& job, const PixelPlaces& places, const SmallTriangle& t,
+                               std::uint32_t ordinal) {
     const std::int32_t picture_x = static_cast<std::int32_t>(t.position & 0xffffu),
                        picture_y = static_cast<std::int32_t>(t.position >> 16);
     const std::int32_t x = picture_x - job.x0, y = picture_y - job.y0;
@@ -251,29 +261,35 @@ TESSERA_INLINE void fill_small(VisibilityJob& job, const SmallTriangle& t, std::
         if (y < 0) mask &= ~std::uint64_t{0} << (kBlockSide * -y);
         if (y > inner) mask &= ~std::uint64_t{0} >> (kBlockSide * (y - inner));
     }
+    static constexpr float kStep[kBlockSide] = {0, 256, 512, 768, 1024, 1280, 1536, 1792};
     const DepthPlane<float>& p = t.depth;
-    const std::int32_t dx = 256 * picture_x + job.offset.x - p.anchor_x,
-                       dy = 256 * picture_y + job.offset.y - p.anchor_y;
+    const float dx = static_cast<float>(256 * picture_x + job.offset.x - p.anchor_x),
+                dy = static_cast<float>(256 * picture_y + job.offset.y - p.anchor_y);
+    const std::int32_t* const column_places = places.column + x;
+    const std::int32_t* const row_places = places.row + y;
     for (; mask; mask &= mask - 1) {
         const int bit = __builtin_ctzll(mask), column = bit & 7, row = bit >> 3;
-        const std::int32_t at = column_place(x + column) + row_place(y + row, job.side);
-        const float plane = (p.depth + p.ddy * static_cast<float>(dy + 256 * row)) +
-                            p.ddx * static_cast<float>(dx + 256 * column);
+        const std::int32_t at = column_places[column] + row_places[row];
+        const float plane = (p.depth + p.ddy * (dy + kStep[row])) + p.ddx * (dx + kStep[column]);
         const float z = min(max(plane, p.lowest), p.highest);
         const float before = job.depth[at];
         const bool pass = z > before;
-        job.depth[at] = pass ? z : before;
-        job.ordinal[at] = pass ? ordinal : job.ordinal[at];
-        if (job.count) {
+        if constexpr (kCount) {
             const bool counted = before < 3.4e38f;
             job.counters.samples_covered += counted;
             job.counters.fragments_passed += pass;
             if (job.overdraw) job.overdraw[at] += counted;
         }
+        if (pass) {
+            job.depth[at] = z;
+            job.ordinal[at] = ordinal;
+        }
     }
 }
 
-inline void visibility(VisibilityJob& job) {
+template <bool kCount>
+inline void draw_bins(VisibilityJob& job) {
+    const PixelPlaces places(job.side);
     job.counters = {};
     std::uint32_t ordinal = 0;
     float floor = 0;
@@ -286,7 +302,7 @@ inline void visibility(VisibilityJob& job) {
                 const SmallTriangle* t = bin.small + run.first;
                 for (const SmallTriangle* const end = t + run.count; t != end; ++t) {
                     job.triangles[ordinal++] = {t->triangle, t->instance};
-                    fill_small(job, *t, ordinal);
+                    fill_small<kCount>(job, places, *t, ordinal);
                 }
                 continue;
             }
@@ -303,10 +319,12 @@ inline void visibility(VisibilityJob& job) {
                         continue;
                     }
                 }
-                fill_large(job, *t, ordinal);
+                fill_large<kCount>(job, *t, ordinal);
             }
         }
     }
 }
+
+inline void visibility(VisibilityJob& job) { job.count ? draw_bins<true>(job) : draw_bins<false>(job); }
 
 }  // namespace tessera::TESSERA_ISA_NAMESPACE

@@ -21,7 +21,7 @@ T* make_plane(bool wanted, const RenderOptions& options, PixelFormat format, Ima
 
 Canvas::Canvas(const RenderOptions& options) : options_(options) {
     const auto pixels = static_cast<std::size_t>(options.width) * static_cast<std::size_t>(options.height);
-    if (options.want_color || options.want_linear) sums_.assign(4 * pixels, 0.0f);
+    sums_.assign(4 * pixels, 0.0f);
     hit_.assign(pixels, 0);
 }
 
@@ -29,7 +29,6 @@ void Canvas::develop(const FilmView& film, const RasterTargets& targets, RenderS
     const float weight = 1.0f / static_cast<float>(options_.samples);
     for (std::size_t pixel = 0; pixel < hit_.size(); ++pixel) {
         stats.pixels_covered += hit_[pixel] != 0;
-        if (!is_shaded()) continue;
         const float* sum = sums_.data() + 4 * pixel;
         const Vec3T<float> mean{sum[0] * weight, sum[1] * weight, sum[2] * weight};
         const float alpha = sum[3] * weight;
@@ -49,7 +48,7 @@ void Canvas::develop(const FilmView& film, const RasterTargets& targets, RenderS
     }
 }
 
-void take_labels(ReferenceEngine& engine, const RunControl& control, const RasterTargets& targets) {
+LabelCounts take_labels(ReferenceEngine& engine, const RunControl& control, const RasterTargets& targets) {
     const SamplePosition centre{128, 128};
     const Visibility seen = engine.see(centre, control);
     std::vector<std::uint32_t> nearest = seen.triangle;
@@ -60,15 +59,18 @@ void take_labels(ReferenceEngine& engine, const RunControl& control, const Raste
                                 256 * static_cast<std::int32_t>(f.pixel / width) + centre.y};
         if (engine.sampler().alpha(f.triangle, at) >= 0.5f) nearest[f.pixel] = f.triangle + 1;
     }
+    LabelCounts counts{seen.counters, 0};
+    for (const std::uint32_t t : nearest) counts.pixels += t != 0;
     if (targets.triangle) std::copy(nearest.begin(), nearest.end(), targets.triangle);
-    if (!targets.distance) return;
+    if (!targets.distance) return counts;
     for (std::size_t i = 0; i < nearest.size(); ++i) {
         const auto width = static_cast<std::size_t>(seen.width);
         const SamplePosition at{256 * static_cast<std::int32_t>(i % width) + centre.x,
                                 256 * static_cast<std::int32_t>(i / width) + centre.y};
-        targets.distance[i] = nearest[i] == 0 ? std::numeric_limits<float>::infinity()
-                                              : engine.sampler().distance(nearest[i] - 1, at);
+        targets.distance[i] =
+            nearest[i] == 0 ? std::numeric_limits<float>::infinity() : engine.sampler().distance(nearest[i] - 1, at);
     }
+    return counts;
 }
 
 void add_counters(RenderStats& stats, const VisibilityCounters& counters, bool first) {
@@ -79,6 +81,11 @@ void add_counters(RenderStats& stats, const VisibilityCounters& counters, bool f
     stats.culled_backface = counters.culled_backface;
     stats.culled_degenerate = counters.culled_degenerate;
     stats.clipped = counters.clipped;
+}
+
+void add_counters(RenderStats& stats, const LabelCounts& counts) {
+    add_counters(stats, counts.counters, true);
+    stats.pixels_covered = counts.pixels;
 }
 
 void add_counters(RenderStats& stats, const RasterCounters& counters) {

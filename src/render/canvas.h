@@ -14,10 +14,6 @@ class Canvas {
   public:
     explicit Canvas(const RenderOptions& options);
 
-    // Whether any colour is wanted. Else pixels are only marked as covered.
-    bool is_shaded() const { return !sums_.empty(); }
-    void mark(std::size_t pixel) { hit_[pixel] = 1; }
-
     // Adds one sample's colour to a pixel.
     void add(std::size_t pixel, const Vec3T<float>& premultiplied, float alpha) {
         float* p = sums_.data() + 4 * pixel;
@@ -34,14 +30,22 @@ class Canvas {
     std::vector<char> hit_;
 };
 
+// What the pass of the labels saw, and how many pixels it labelled.
+struct LabelCounts {
+    VisibilityCounters counters;
+    std::uint64_t pixels;
+};
+
 // Depth and primitive planes, at the pixel centre, of the nearest surface with alpha of at least one
 // half.
-void take_labels(ReferenceEngine& engine, const RunControl& control, const RasterTargets& targets);
+LabelCounts take_labels(ReferenceEngine& engine, const RunControl& control, const RasterTargets& targets);
 
 // Adds a pass' counters to the statistics. The culling counters are those of the first pass: the
 // others cull the same triangles again.
 void add_counters(RenderStats& stats, const VisibilityCounters& counters, bool first);
 void add_counters(RenderStats& stats, const RasterCounters& counters);
+// Of a picture of labels alone.
+void add_counters(RenderStats& stats, const LabelCounts& counts);
 
 // The planes that the options ask for, made where `result` does not have them yet; the others are let go.
 RasterTargets make_planes(const RenderOptions& options, RenderResult& result);

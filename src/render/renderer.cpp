@@ -17,8 +17,7 @@
 namespace tessera {
 namespace {
 
-// Shades what was seen at one sample position of every pixel, if any colour is wanted, and adds it to the
-// picture.
+// Shades what was seen at one sample position of every pixel and adds it to the picture.
 void shade_pass(ReferenceEngine& engine, const Visibility& seen, SamplePosition offset, Canvas& canvas,
                 const std::function<void(double)>& checkpoint) {
     const Fragment* transparent = seen.transparent.data();
@@ -29,10 +28,6 @@ void shade_pass(ReferenceEngine& engine, const Visibility& seen, SamplePosition 
         const Fragment* const first = transparent;
         while (transparent != end && transparent->pixel == pixel) ++transparent;
         if (seen.triangle[pixel] == 0 && first == transparent) continue;
-        if (!canvas.is_shaded()) {
-            canvas.mark(pixel);
-            continue;
-        }
         const SampleColor c = engine.shade_sample(seen, pixel, offset, first, transparent);
         canvas.add(pixel, c.premultiplied, c.alpha);
     }
@@ -122,22 +117,25 @@ void Renderer::Impl::draw_reference(const Watchdog& watchdog, Stopwatch& watch, 
     const RasterTargets targets = make_planes(options, result);
     watch.phase("build");
 
-    Canvas canvas(options);
-    for (int sample = 0; sample < options.samples; ++sample) {
-        const SampleOffset s = sample_offset(sample, options.samples);
-        const SamplePosition offset{s.x, s.y};
-        const Visibility seen = engine.see(offset, watchdog.control(2 * sample, 2 * options.samples));
-        add_counters(result.stats, seen.counters, sample == 0);
-        watch.phase("visibility");
-        shade_pass(engine, seen, offset, canvas, watchdog.control(2 * sample + 1, 2 * options.samples).checkpoint);
-        watch.phase("shading");
+    if (targets.colors()) {
+        Canvas canvas(options);
+        for (int sample = 0; sample < options.samples; ++sample) {
+            const SampleOffset s = sample_offset(sample, options.samples);
+            const SamplePosition offset{s.x, s.y};
+            const Visibility seen = engine.see(offset, watchdog.control(2 * sample, 2 * options.samples));
+            add_counters(result.stats, seen.counters, sample == 0);
+            watch.phase("visibility");
+            shade_pass(engine, seen, offset, canvas, watchdog.control(2 * sample + 1, 2 * options.samples).checkpoint);
+            watch.phase("shading");
+        }
+        canvas.develop(shading.film(options), targets, result.stats);
+        watch.phase("film");
     }
-    if (targets.distance || targets.triangle) {
-        take_labels(engine, watchdog.control(0, 0), targets);
+    if (targets.labels()) {
+        const LabelCounts labels = take_labels(engine, watchdog.control(0, targets.colors() ? 0 : 1), targets);
+        if (!targets.colors()) add_counters(result.stats, labels);
         watch.phase("labels");
     }
-    canvas.develop(shading.film(options), targets, result.stats);
-    watch.phase("film");
 }
 
 Renderer::~Renderer() = default;
