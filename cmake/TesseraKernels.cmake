@@ -16,9 +16,12 @@ set(TESSERA_ISA_FLAGS_scalar "")
 set(TESSERA_ISA_FLAGS_sse4 -msse4.2 -maes -mpclmul)
 set(TESSERA_ISA_FLAGS_avx2 -mavx2 -mfma -mf16c -mbmi -mbmi2 -mlzcnt -maes -mpclmul)
 set(TESSERA_ISA_FLAGS_avx512 -march=skylake-avx512 -mprefer-vector-width=512)
-# g++ copies structures of vectors in pieces of half a vector; reading them back as a whole then waits
-# for the stores.
+# g++ copies structures of vectors through memory, in pieces of half a vector, which whole loads then
+# wait for: whole pieces, and registers instead of memory for larger structures.
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  foreach(isa sse4 avx2 avx512)
+    list(APPEND TESSERA_ISA_FLAGS_${isa} "SHELL:--param sra-max-scalarization-size-Ospeed=8192")
+  endforeach()
   list(APPEND TESSERA_ISA_FLAGS_avx2 -mmove-max=256 -mstore-max=256)
   list(APPEND TESSERA_ISA_FLAGS_avx512 -mmove-max=512 -mstore-max=512)
 endif()

@@ -26,23 +26,6 @@ inline void find_visible(VisibleJob& job) {
     }
 }
 
-// Writes a vector of numbers of 4 bytes of a block to rows of the picture, as far as they lie in it.
-// (x, y): the vector's first pixel in the tile.
-TESSERA_INLINE void store_pixels(const Uint& values, unsigned char* first_pixel, std::size_t stride, int x, int y,
-                                 int width, int height) {
-    alignas(64) std::uint32_t all[kLanes<Float>];
-    store(all, values);
-    constexpr int kColumns = kLanes<Float> < kBlockSide ? kLanes<Float> : kBlockSide;
-    for (int row = 0; row < kRows; ++row) {
-        if (y + row >= height) return;
-        unsigned char* const to = first_pixel + static_cast<std::size_t>(y + row) * stride + 4 * static_cast<std::size_t>(x);
-        if (x + kColumns <= width)
-            __builtin_memcpy(to, all + row * kColumns, 4 * kColumns);
-        else if (x < width)
-            __builtin_memcpy(to, all + row * kColumns, 4 * static_cast<std::size_t>(width - x));
-    }
-}
-
 // Visits the vectors of a tile's blocks: visit(place, x, y) with the first pixel in the tile.
 template <class Visit>
 TESSERA_INLINE void for_each_vector(int side, int width, int height, Visit&& visit) {
@@ -56,18 +39,23 @@ TESSERA_INLINE void for_each_vector(int side, int width, int height, Visit&& vis
 
 inline void develop_tile(const DevelopJob& job) {
     const Float weight(job.weight), zero(0.0f);
-    const auto pack = [](const DisplayPixel<Float>& d) {
-        return as_uint(d.r | (d.g << 8) | (d.b << 16) | (d.a << 24));
-    };
-    const Uint background = pack(develop(job.film, Vec3T<Float>{zero, zero, zero}, zero));
+    const Uint background = display_pixels(job.film, {zero, zero, zero}, zero);
+    if (!job.r) {
+        const std::uint32_t pixel = lane(background, 0);
+        for (int y = 0; y < job.height; ++y) {
+            std::uint8_t* const row = job.rgba + static_cast<std::size_t>(y) * job.stride;
+            for (int x = 0; x < job.width; ++x) __builtin_memcpy(row + 4 * x, &pixel, 4);
+        }
+        return;
+    }
     for_each_vector(job.side, job.width, job.height, [&](int at, int x, int y) {
         const Float alpha = load<Float>(job.alpha + at);
         Uint pixels = background;
-        if (any(alpha != zero)) {
-            const Vec3T<Float> mean{load<Float>(job.r + at) * weight, load<Float>(job.g + at) * weight,
-                                    load<Float>(job.b + at) * weight};
-            pixels = pack(develop(job.film, mean, alpha * weight));
-        }
+        if (any(alpha != zero))
+            pixels = display_pixels(job.film,
+                                    {load<Float>(job.r + at) * weight, load<Float>(job.g + at) * weight,
+                                     load<Float>(job.b + at) * weight},
+                                    alpha * weight);
         store_pixels(pixels, job.rgba, job.stride, x, y, job.width, job.height);
     });
 }

@@ -199,6 +199,7 @@ struct ShadeJob {
     SamplePosition offset;
     const std::uint32_t* ordinal;
     bool first;           // store the sums instead of adding to them
+    const struct DevelopJob* develop;  // one sample a pixel: develop at once, without sums; else null
     std::uint64_t* hit;   // by block: bit per pixel
     // Or a list of points, padded to kMaxLanes.
     const std::int32_t *x, *y;  // picture positions
@@ -207,7 +208,7 @@ struct ShadeJob {
     float *r, *g, *b, *alpha;  // by pixel, or by point
 };
 
-// Develops a tile: sums over the samples in, display values out.
+// Develops a tile: sums over the samples in, display values out. Without sums (r is null): background.
 struct DevelopJob {
     FilmView film;
     float weight;  // one over the number of samples

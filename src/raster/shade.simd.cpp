@@ -5,7 +5,10 @@ namespace tessera::TESSERA_ISA_NAMESPACE {
 
 // A whole tile through the constant layouts; lists, which are short, as they come.
 void shade_tile(const ShadeJob& job) {
-    with_kind(job, [&](auto kind) { shade_tile_as<decltype(kind)>(job); });
+    with_kind(job, [&](auto kind) {
+        using Kind = decltype(kind);
+        job.develop ? shade_and_develop_tile<Kind>(job) : shade_tile_as<Kind>(job);
+    });
 }
 
 void shade_points(const ShadeJob& job) { shade_points_as<Textured<AnyLayout>>(job); }

@@ -34,7 +34,7 @@ TESSERA_INLINE void with_kind(const ShadeJob& job, Visit&& visit) {
     for (const TextureInput& in : job.material->inputs) textured |= in.texture != nullptr;
     if (!textured && job.layout == NormalOnly::kLayout) return visit(Untextured<NormalOnly>());
     if (textured && job.layout == NormalAndUv::kLayout) return visit(Textured<NormalAndUv>());
-    if (!textured && job.layout == ColorOnly::kLayout) return visit(Untextured<ColorOnly>());
+    if (!textured && job.layout == ColorOnly::kLayout && job.develop) return visit(Untextured<ColorOnly>());
     visit(Textured<AnyLayout>());
 }
 
@@ -114,22 +114,23 @@ TESSERA_INLINE ShadedPoint<Float> shade_lanes(const Batch& batch, const Uint& or
                                   [](int, const LightSample<Float>&) { return Float(1.0f); });
 }
 
+inline constexpr std::uint32_t kAllLanes = (1u << (kLanes<Float> - 1) << 1) - 1;
+
 // Visits batches of lanes: a tile in the order of its blocks, or a list of points.
 // visit(ordinals, used, x, y, where the answer goes).
 template <class Visit>
 TESSERA_INLINE void for_each_batch(const ShadeJob& job, Visit&& visit) {
     constexpr int kWidth = kLanes<Float>;
-    constexpr std::uint32_t kAll = (1u << (kWidth - 1) << 1) - 1;
     if (job.list) {
         for (std::uint32_t i = 0; i < job.count; i += kWidth) {
             const std::uint32_t left = job.count - i;
-            visit(load<Uint>(job.list + i), left < kWidth ? (1u << left) - 1 : kAll, to_float(load<Int>(job.x + i)),
+            visit(load<Uint>(job.list + i), left < kWidth ? (1u << left) - 1 : kAllLanes, to_float(load<Int>(job.x + i)),
                   to_float(load<Int>(job.y + i)), static_cast<int>(i));
         }
         return;
     }
     const int blocks = job.side / kBlockSide;
-    const Int columns = iota<Int>() & Int(kBlockSide - 1), rows = iota<Int>() >> 3;
+    const Int columns = lane_column(), rows = lane_row();
     for (int block = 0; block < blocks * blocks; ++block) {
         const int px = block % blocks * kBlockSide, py = block / blocks * kBlockSide;
         for (int at = 0; at < kBlockPixels; at += kWidth) {
@@ -141,6 +142,33 @@ TESSERA_INLINE void for_each_batch(const ShadeJob& job, Visit&& visit) {
                   to_float((row << 8) + Int(256 * job.y0 + job.offset.y)), place);
         }
     }
+}
+
+// One sample a pixel: from the surface to the picture.
+template <class Kind>
+inline void shade_and_develop_tile(const ShadeJob& job) {
+    const Batch batch(job);
+    const DevelopJob& film = *job.develop;
+    const Float zero(0.0f), one(1.0f);
+    const Uint background = display_pixels(film.film, {zero, zero, zero}, zero);
+    const int blocks = job.side / kBlockSide;
+    for_each_batch(job, [&](const Uint& ordinals, std::uint32_t used, Float x, Float y, int at) {
+        const int block = at / kBlockPixels, place = at % kBlockPixels;
+        Uint pixels = background;
+        if (used) {
+            Vec3T<Float> c = shade_lanes<Kind>(batch, ordinals, used, x, y).radiance;
+            Float coverage = one;
+            if (used != kAllLanes) {
+                const Mask covered = ordinals != Uint(0u);
+                c = {select(covered, c.x, zero), select(covered, c.y, zero), select(covered, c.z, zero)};
+                coverage = select(covered, one, zero);
+            }
+            pixels = display_pixels(film.film, c, coverage);
+            job.hit[block] |= static_cast<std::uint64_t>(used) << place;
+        }
+        store_pixels(pixels, film.rgba, film.stride, block % blocks * kBlockSide + place % kBlockSide,
+                     block / blocks * kBlockSide + place / kBlockSide, film.width, film.height);
+    });
 }
 
 template <class Kind>

@@ -2,6 +2,7 @@
 // kernel file, once per instruction set.
 #pragma once
 
+#include "raster/pixel_kernel.h"
 #include "raster/setup_kernel.h"
 
 namespace tessera::TESSERA_ISA_NAMESPACE {

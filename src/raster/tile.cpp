@@ -83,13 +83,14 @@ void Tile::draw(const TileTask& task, int index) {
             fill_background();
         } else {
             std::fill(hit_.begin(), hit_.end(), 0);
+            developed_ = false;
             bool first = true;
             for (const SamplePosition& offset : task.settings.samples) {
                 find_visible(offset);
                 take_sample(offset, first);
                 first = false;
             }
-            develop();
+            finish_colors();
             const SamplePosition only = task.settings.samples[0];
             centre_seen = task.settings.samples.size() == 1 && only.x == 128 && only.y == 128;
         }
@@ -255,6 +256,8 @@ void Tile::shade_opaque(SamplePosition offset, bool first, Planes& planes) {
         any = true;
     }
     if (one && any) {
+        const bool at_once = task_->settings.samples.size() == 1 && fragments_.empty() && !task_->targets.linear;
+        const DevelopJob film = develop_job();
         ShadeJob job = shade_job(batch);
         job.x0 = x0_;
         job.y0 = y0_;
@@ -262,11 +265,13 @@ void Tile::shade_opaque(SamplePosition offset, bool first, Planes& planes) {
         job.offset = offset;
         job.ordinal = ordinal_.data();
         job.first = first;
+        job.develop = at_once ? &film : nullptr;
         job.hit = hit_.data();
         job.r = planes[0].data();
         job.g = planes[1].data();
         job.b = planes[2].data();
         job.alpha = planes[3].data();
+        developed_ = at_once;
         task_->kernels.shade_tile(job);
         return;
     }
@@ -408,39 +413,49 @@ void Tile::inspect() {
     }
 }
 
+// A tile that nothing reaches.
 void Tile::fill_background() {
-    for (std::vector<float>& plane : sum_) std::fill(plane.begin(), plane.end(), 0.0f);
-    std::fill(hit_.begin(), hit_.end(), 0);
-    develop();
+    DevelopJob job = develop_job();
+    job.r = nullptr;
+    if (job.rgba) task_->kernels.develop(job);
+    if (!task_->targets.linear) return;
+    const auto picture_width = static_cast<std::size_t>(task_->frame.projection.width);
+    for (int y = 0; y < height_; ++y)
+        std::fill_n(task_->targets.linear +
+                        4 * (picture_place(0) + static_cast<std::size_t>(y) * picture_width),
+                    4 * width_, 0.0f);
 }
 
-void Tile::develop() {
+DevelopJob Tile::develop_job() const {
+    DevelopJob job{};
+    job.film = task_->settings.film;
+    job.weight = 1.0f / static_cast<float>(task_->settings.samples.size());
+    job.side = side_;
+    job.width = width_;
+    job.height = height_;
+    job.r = sum_[0].data();
+    job.g = sum_[1].data();
+    job.b = sum_[2].data();
+    job.alpha = sum_[3].data();
+    job.rgba = task_->targets.rgba ? task_->targets.rgba + 4 * picture_place(0) : nullptr;
+    job.stride = 4 * static_cast<std::size_t>(task_->frame.projection.width);
+    return job;
+}
+
+// Counts what was hit, and writes the colours that are not there yet.
+void Tile::finish_colors() {
     for (const std::uint64_t block : hit_)
         if (block) pixels_covered += static_cast<std::uint64_t>(std::popcount(block));
-    const std::size_t picture_width = static_cast<std::size_t>(task_->frame.projection.width);
-    const float weight = 1.0f / static_cast<float>(task_->settings.samples.size());
-    if (task_->targets.rgba) {
-        DevelopJob job{};
-        job.film = task_->settings.film;
-        job.weight = weight;
-        job.side = side_;
-        job.width = width_;
-        job.height = height_;
-        job.r = sum_[0].data();
-        job.g = sum_[1].data();
-        job.b = sum_[2].data();
-        job.alpha = sum_[3].data();
-        job.rgba = task_->targets.rgba + 4 * picture_place(0);
-        job.stride = 4 * picture_width;
-        task_->kernels.develop(job);
-    }
+    if (developed_) return;
+    const DevelopJob job = develop_job();
+    if (job.rgba) task_->kernels.develop(job);
     if (!task_->targets.linear) return;
     for (std::uint32_t pixel = 0; pixel < depth_.size(); ++pixel) {
         const TilePixel p(pixel, side_);
         if (p.x >= width_ || p.y >= height_) continue;
         float* out = task_->targets.linear + 4 * picture_place(pixel);
         for (std::size_t c = 0; c < 4; ++c) {
-            const float v = sum_[c][pixel] * weight;
+            const float v = sum_[c][pixel] * job.weight;
             out[c] = v == v ? v : 0.0f;
         }
     }

@@ -56,8 +56,9 @@ class Tile {
     void compose_fragments(SamplePosition offset);
     void label(bool seen);
     void inspect();
-    void develop();
+    void finish_colors();
     void fill_background();
+    DevelopJob develop_job() const;
     std::uint32_t number(std::uint32_t ordinal) const;
     std::size_t picture_place(std::uint32_t pixel) const;
     ShadeJob shade_job(std::uint32_t instance) const;
@@ -66,6 +67,7 @@ class Tile {
     const TileTask* task_ = nullptr;
     int side_ = 0, x0_ = 0, y0_ = 0, width_ = 0, height_ = 0;  // width and height: within the picture
     std::uint32_t triangle_count_ = 0;
+    bool developed_ = false;  // the colours are in the picture already
     std::vector<TileBin> bins_;
     std::vector<float> depth_, floor_;
     std::vector<std::uint32_t> ordinal_, overdraw_;

@@ -6,13 +6,6 @@
 
 namespace tessera::TESSERA_ISA_NAMESPACE {
 
-// How a block of 8x8 pixels falls into vectors, row after row: kRows rows in a vector, or kPerRow
-// vectors in a row.
-inline constexpr int kRows = kLanes<Float> > kBlockSide ? kLanes<Float> / kBlockSide : 1;
-inline constexpr int kPerRow = kLanes<Float> < kBlockSide ? kBlockSide / kLanes<Float> : 1;
-TESSERA_INLINE Int lane_column() { return iota<Int>() & Int(kBlockSide - 1); }
-TESSERA_INLINE Int lane_row() { return iota<Int>() >> 3; }
-
 // An edge over the samples of a tile. With vertices in 24.8 every sample of a pixel grid has the same
 // sub-pixel part, so E / 256, rounded down, steps by whole a and b per pixel and keeps the sign of E:
 // 64 bits once per tile, 32 bits per sample (vertices lie in the guard band, tiles are 128 pixels at

@@ -133,6 +133,10 @@ void ShadingScene::light(const Scene& scene, const Frame& frame, const RenderOpt
     const bool studio =
         options.lighting == Lighting::kStudio || (options.lighting == Lighting::kAuto && frame.lights.empty());
     lights_ = studio ? studio_lights() : scene_lights(scene, frame);
+    all_unlit_ = !frame.instances.empty() &&
+                 std::all_of(frame.instances.begin(), frame.instances.end(), [this](const InstanceView& instance) {
+                     return materials_[instance.material].model == ShadingModel::kUnlit;
+                 });
     context_.materials = materials_.data();
     context_.lights = lights_.data();
     context_.light_count = static_cast<int>(lights_.size());

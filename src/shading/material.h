@@ -91,9 +91,13 @@ TESSERA_INLINE LobeParameters<F> evaluate_material(const MaterialView& m, const 
     p.view = view;
     p.normal = shading_normal<kTextured>(m, s);
     p.emission = Vec3T<F>::load(m.emission) * read_input<kTextured>(m, TextureSlot::kEmissive, s).xyz();
-    const Vec4T<F> mr = read_input<kTextured>(m, TextureSlot::kMetallicRoughness, s);
-    p.metallic = saturate(F(m.metallic) * mr.z);
-    p.roughness = saturate(F(m.roughness) * mr.y);
+    p.metallic = F(0.0f);
+    p.roughness = F(1.0f);
+    if (m.model == ShadingModel::kMetallicRoughness) {
+        const Vec4T<F> mr = read_input<kTextured>(m, TextureSlot::kMetallicRoughness, s);
+        p.metallic = saturate(F(m.metallic) * mr.z);
+        p.roughness = saturate(F(m.roughness) * mr.y);
+    }
     const F occlusion = read_input<kTextured>(m, TextureSlot::kOcclusion, s).x;
     p.occlusion = F(1.0f) + F(m.occlusion_strength) * (occlusion - F(1.0f));
     return p;

@@ -68,8 +68,8 @@ TESSERA_INLINE Vec4T<F> fetch_texel(const TextureView& t, IntOf<F> index) {
     const auto rgba = gather(t.texels, index);
     using U = UintOf<F>;
     const F scale(1.0f / 255.0f);
-    Vec4T<F> c{to_float(rgba & U(255u)) * scale, to_float((rgba >> 8) & U(255u)) * scale,
-               to_float((rgba >> 16) & U(255u)) * scale, to_float(rgba >> 24) * scale};
+    Vec4T<F> c{to_float(as_int(rgba & U(255u))) * scale, to_float(as_int((rgba >> 8) & U(255u))) * scale,
+               to_float(as_int((rgba >> 16) & U(255u))) * scale, to_float(as_int(rgba >> 24)) * scale};
     if (t.srgb) {
         c.x = texel_to_linear(c.x);
         c.y = texel_to_linear(c.y);
@@ -78,20 +78,29 @@ TESSERA_INLINE Vec4T<F> fetch_texel(const TextureView& t, IntOf<F> index) {
     return c;
 }
 
+// Entry `level` of a table by level, which most often is one for all lanes.
+template <class F>
+TESSERA_INLINE IntOf<F> of_level(const std::int32_t* table, IntOf<F> level, std::int32_t first, bool same) {
+    return same ? IntOf<F>(table[first]) : gather(table, level);
+}
+
 // One level; u and v already within [0, 1].
 template <class F>
 TESSERA_INLINE Vec4T<F> sample_level(const TextureView& t, F u, F v, IntOf<F> level, bool linear) {
     using I = IntOf<F>;
-    const I width = gather(t.width, level), height = gather(t.height, level), offset = gather(t.offset, level);
+    const std::int32_t first = lane(level, 0);
+    const bool same = all(level == I(first));
+    const I width = of_level<F>(t.width, level, first, same), height = of_level<F>(t.height, level, first, same),
+            offset = of_level<F>(t.offset, level, first, same);
     const F x = u * to_float(width), y = v * to_float(height);
     if (!linear) {
-        const I xi = wrap_index(to_int(floor(x)), width, Wrap::kClamp);
-        const I yi = wrap_index(to_int(floor(y)), height, Wrap::kClamp);
+        const I xi = wrap_index(truncate_int(floor(x)), width, Wrap::kClamp);
+        const I yi = wrap_index(truncate_int(floor(y)), height, Wrap::kClamp);
         return fetch_texel<F>(t, offset + yi * width + xi);
     }
     const F x0 = floor(x - F(0.5f)), y0 = floor(y - F(0.5f));
     const F fx = x - F(0.5f) - x0, fy = y - F(0.5f) - y0;
-    const I left = to_int(x0), top = to_int(y0);
+    const I left = truncate_int(x0), top = truncate_int(y0);
     const I xl = wrap_index(left, width, t.wrap_s), xr = wrap_index(left + I(1), width, t.wrap_s);
     const I row0 = offset + wrap_index(top, height, t.wrap_t) * width;
     const I row1 = offset + wrap_index(top + I(1), height, t.wrap_t) * width;
@@ -133,10 +142,10 @@ TESSERA_INLINE Vec4T<F> sample_texture(const TextureView& t, F u, F v, const Foo
     const F clamped = min(max(lod, F(0.0f)), F(static_cast<float>(t.levels - 1)));
     Vec4T<F> c;
     if (t.mip == MipFilter::kNearest) {
-        c = sample_level(t, u, v, to_int(floor(clamped + F(0.5f))), t.min_linear);
+        c = sample_level(t, u, v, truncate_int(floor(clamped + F(0.5f))), t.min_linear);
     } else {
         const F lower = floor(clamped);
-        const I level = to_int(lower);
+        const I level = truncate_int(lower);
         const I next = min(level + I(1), I(t.levels - 1));
         const Vec4T<F> a = sample_level(t, u, v, level, t.min_linear), b = sample_level(t, u, v, next, t.min_linear);
         const F f = clamped - lower;

@@ -48,12 +48,18 @@ TESSERA_INLINE Vec3T<F> cross(const Vec3T<F>& a, const Vec3T<F>& b) {
 // a / |a|, or `fallback` where |a| is zero, too small to square, or not a number.
 template <class F>
 TESSERA_INLINE Vec3T<F> normalize_or(const Vec3T<F>& a, const Vec3T<F>& fallback) {
-    const F squared = dot(a, a);
+    F squared = dot(a, a);
     const auto usable = (squared > F(1e-37f)) & (squared < F(1e37f));
-    if (all(usable)) return a * (F(1.0f) / sqrt(squared));
-    const F scale = F(1.0f) / sqrt(select(usable, squared, F(1.0f)));
-    return {select(usable, a.x * scale, fallback.x), select(usable, a.y * scale, fallback.y),
-            select(usable, a.z * scale, fallback.z)};
+    const bool all_usable = all(usable);
+    if (!all_usable) squared = select(usable, squared, F(1.0f));
+    const F scale = F(1.0f) / sqrt(squared);
+    F x = a.x * scale, y = a.y * scale, z = a.z * scale;
+    if (!all_usable) {
+        x = select(usable, x, fallback.x);
+        y = select(usable, y, fallback.y);
+        z = select(usable, z, fallback.z);
+    }
+    return {x, y, z};
 }
 
 template <class M, class F>

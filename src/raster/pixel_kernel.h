@@ -1,0 +1,39 @@
+// Vectors of pixels between blocks of a tile and rows of the picture. Part of the kernel files, once
+// per instruction set.
+#pragma once
+
+#include "raster/raster_data.h"
+
+namespace tessera::TESSERA_ISA_NAMESPACE {
+
+// How a block of 8x8 pixels falls into vectors, row after row: kRows rows in a vector, or kPerRow
+// vectors in a row.
+inline constexpr int kRows = kLanes<Float> > kBlockSide ? kLanes<Float> / kBlockSide : 1;
+inline constexpr int kPerRow = kLanes<Float> < kBlockSide ? kBlockSide / kLanes<Float> : 1;
+TESSERA_INLINE Int lane_column() { return iota<Int>() & Int(kBlockSide - 1); }
+TESSERA_INLINE Int lane_row() { return iota<Int>() >> 3; }
+
+// Writes a vector of numbers of 4 bytes of a block to rows of the picture, as far as they lie in it.
+// (x, y): the vector's first pixel in the tile.
+TESSERA_INLINE void store_pixels(const Uint& values, unsigned char* first_pixel, std::size_t stride, int x, int y,
+                                 int width, int height) {
+    alignas(64) std::uint32_t all[kLanes<Float>];
+    store(all, values);
+    constexpr int kColumns = kLanes<Float> < kBlockSide ? kLanes<Float> : kBlockSide;
+    for (int row = 0; row < kRows; ++row) {
+        if (y + row >= height) return;
+        unsigned char* const to = first_pixel + static_cast<std::size_t>(y + row) * stride + 4 * static_cast<std::size_t>(x);
+        if (x + kColumns <= width)
+            __builtin_memcpy(to, all + row * kColumns, 4 * kColumns);
+        else if (x < width)
+            __builtin_memcpy(to, all + row * kColumns, 4 * static_cast<std::size_t>(width - x));
+    }
+}
+
+// Display values of a vector of pixels, RGBA from the lowest byte on.
+TESSERA_INLINE Uint display_pixels(const FilmView& film, const Vec3T<Float>& premultiplied, Float coverage) {
+    const DisplayPixel<Float> d = develop(film, premultiplied, coverage);
+    return as_uint(d.r | (d.g << 8) | (d.b << 16) | (d.a << 24));
+}
+
+}  // namespace tessera::TESSERA_ISA_NAMESPACE
