@@ -1,13 +1,16 @@
 // All of shading in one kernel, compiled once per instruction set: clip space, out-codes, snapping,
-// depth plane, barycentrics, surface point, material with its textures, lights, film. Its results
-// include what lies between, so that a difference names the stage where it began.
+// depth plane, surface planes, surface point, material with its textures, lights, film; and the surface
+// point of a ray's hit. Its results include what lies between, so that a difference names the stage
+// where it began.
 #pragma once
 
 #include "shading/film.h"
 #include "shading/shade.h"
+#include "shading/surface_planes.h"
 #include "simd/isa.h"
 
 #include <cstdint>
+#include <string_view>
 
 namespace tessera {
 
@@ -29,8 +32,7 @@ inline constexpr ChainStage kChainStages[] = {
     {"out-codes", 3, false},
     {"snapped vertices", 6, false},
     {"depth plane", 3, true},
-    {"barycentrics", 3, true},
-    {"derivatives", 6, true},
+    {"surface planes", kMaxSurfaceFloats, true},
     {"position and normals", 9, true},
     {"tangent frame", 6, true},
     {"uv and footprint", 12, true},
@@ -38,17 +40,28 @@ inline constexpr ChainStage kChainStages[] = {
     {"radiance", 3, true},
     {"alpha", 1, true},
     {"film", 12, false},
+    {"point of a ray's hit", 16, true},
 };
-inline constexpr int kChainResults = 77;
+// The first plane of a stage's results; of the end where there is no such stage.
+constexpr int chain_plane(std::string_view stage) {
+    int plane = 0;
+    for (const ChainStage& s : kChainStages) {
+        if (stage == s.name) break;
+        plane += s.results;
+    }
+    return plane;
+}
+inline constexpr int kChainResults = chain_plane("");
 
-// Plane i of point p is planes[i * stride + p], for
-// the inputs and the results alike. `count` is a multiple of the lanes.
+// Plane i of point p is planes[i * stride + p], for the inputs and the results alike. `count` is a multiple of the
+// lanes.
 struct ChainJob {
     const ShadingContext* context;
     const MaterialView* material;
     const InstanceView* instance;
     const FilmView* films;  // one per tone map: 3
-    float width, height;
+    const ProjectionView* projection;
+    SurfaceLayout layout;
     const float* planes;
     std::uint32_t* results;
     int stride, count;

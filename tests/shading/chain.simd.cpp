@@ -46,6 +46,27 @@ struct Writer {
 
 TESSERA_INLINE Int bounded(Int i) { return min(max(i, Int(-(1 << 24))), Int(1 << 24)); }
 
+// A ray's hit: the point at barycentrics made from the sample.
+TESSERA_INLINE void put_hit(const ChainJob& job, const Corner<Float> (&corners)[3], Float x, Float y, Writer& out) {
+    Barycentrics<Float> b;
+    b.b[1] = x * Float(0.5f / (256.0f * job.projection->width));
+    b.b[2] = y * Float(0.5f / (256.0f * job.projection->height));
+    b.b[0] = Float(1.0f) - b.b[1] - b.b[2];
+    for (int i = 0; i < 3; ++i) {
+        b.ddx[i] = b.b[i] - b.b[(i + 1) % 3];
+        b.ddy[i] = b.b[i] - b.b[(i + 2) % 3];
+    }
+    const SurfacePoint<Float> s = surface_point(*job.instance, corners, b, Float(-1.0f), job.context->footprint_scale);
+    out.put(s.position);
+    out.put(s.geometric_normal);
+    out.put(s.normal);
+    out.put(s.tangent);
+    out.put(s.uv[1].x);
+    out.put(s.footprint[1].ux);
+    out.put(s.footprint[1].vy);
+    out.put(s.color.w);
+}
+
 void shade_batch(const ChainJob& job, int first) {
     Reader in{job.planes + first, job.stride};
     Writer out{job.results + first, job.stride};
@@ -66,7 +87,7 @@ void shade_batch(const ChainJob& job, int first) {
     PictureVertex<Float> picture[3];
     Float z[3];
     for (int i = 0; i < 3; ++i) {
-        picture[i] = to_picture(clip[i], job.width, job.height);
+        picture[i] = to_picture(clip[i], job.projection->width, job.projection->height);
         // Vertices behind the eye snap anywhere; differences must not overflow.
         picture[i].snapped_x = bounded(picture[i].snapped_x);
         picture[i].snapped_y = bounded(picture[i].snapped_y);
@@ -83,14 +104,17 @@ void shade_batch(const ChainJob& job, int first) {
         to_float(picture[1].snapped_x - picture[0].snapped_x) * to_float(picture[2].snapped_y - picture[0].snapped_y) -
         to_float(picture[2].snapped_x - picture[0].snapped_x) * to_float(picture[1].snapped_y - picture[0].snapped_y);
     const Float orientation = select(area < Float(0.0f), Float(1.0f), Float(-1.0f));
-    const Vec2T<Float> ndc = sample_ndc<Float>(x, y, job.width, job.height);
-    const Barycentrics<Float> b = barycentrics(clip, ndc, orientation, job.width, job.height);
-    for (const Float v : b.b) out.put(v);
-    for (const Float v : b.ddx) out.put(v);
-    for (const Float v : b.ddy) out.put(v);
+    const Float front = orientation * Float(job.instance->handedness);
+    Float record[kMaxSurfaceFloats];
+    for (Float& number : record) number = Float(0.0f);
+    make_planes(*job.instance, job.layout, corners, clip, picture, front, [&](int i, Float v) { record[i] = v; });
+    for (const Float v : record) out.put(v);
 
-    const SurfacePoint<Float> s = surface_point(
-        *job.instance, corners, b, orientation * Float(job.instance->handedness), job.context->footprint_scale);
+    SurfaceSample<Float> sample;
+    sample_planes(
+        job.layout, to_float(x), to_float(y), [&record](int i) { return record[i]; }, sample);
+    const SurfacePoint<Float> s = surface_point(job.layout, PictureRays(*job.projection), sample, to_float(x),
+                                                to_float(y), record[2], record[3], job.context->footprint_scale);
     out.put(s.position);
     out.put(s.geometric_normal);
     out.put(s.normal);
@@ -115,8 +139,8 @@ void shade_batch(const ChainJob& job, int first) {
 
     // Shadows in steps, by distance and by light.
     const ShadedPoint<Float> shaded =
-        shade(*job.context, *job.material, s, [](int light, const LightSample<Float>& sample) {
-            return select(sample.distance > Float(3.0f + static_cast<float>(light)), Float(0.25f), Float(1.0f));
+        shade(*job.context, *job.material, s, [](int light, const LightSample<Float>& arriving) {
+            return select(arriving.distance > Float(3.0f + static_cast<float>(light)), Float(0.25f), Float(1.0f));
         });
     out.put(shaded.radiance);
     out.put(shaded.alpha);
@@ -127,6 +151,7 @@ void shade_batch(const ChainJob& job, int first) {
         out.put(d.b);
         out.put(d.a);
     }
+    put_hit(job, corners, to_float(x), to_float(y), out);
 }
 
 void run(const ChainJob& job) {

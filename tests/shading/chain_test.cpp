@@ -87,6 +87,9 @@ class World {
         const float camera[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
         const float normals[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
         std::memcpy(instance_.object_to_clip, clip, sizeof clip);
+        std::memcpy(projection_.clip_from_camera, clip, sizeof clip);
+        projection_.width = kWidth;
+        projection_.height = kHeight;
         std::memcpy(instance_.object_to_camera, camera, sizeof camera);
         std::memcpy(instance_.normal_to_camera, normals, sizeof normals);
         instance_.handedness = 1;
@@ -115,12 +118,14 @@ class World {
     }
 
     InstanceView& instance() { return instance_; }
-    ShadingContext& context() { return context_; }
+    void make_orthographic() { context_.orthographic = projection_.orthographic = true; }
 
     std::vector<std::uint32_t> run(const ChainTable& table, const MaterialView& m, const std::vector<float>& planes) {
         constexpr std::size_t kMargin = 19;
         std::vector<std::uint32_t> buffer(std::size_t{kChainResults} * kPoints + kMargin, 0xdeadbeef);
-        table.run({&context_, &m, &instance_, films_, kWidth, kHeight, planes.data(), buffer.data(), kPoints, kPoints});
+        table.run({&context_, &m, &instance_, films_, &projection_,
+                   surface_layout(instance_.mesh, m, projection_.orthographic), planes.data(), buffer.data(), kPoints,
+                   kPoints});
         for (std::size_t i = buffer.size() - kMargin; i < buffer.size(); ++i) EXPECT_EQ(buffer[i], 0xdeadbeef);
         return buffer;
     }
@@ -129,6 +134,7 @@ class World {
     static constexpr float present_[1] = {0};
     FilmView films_[3]{};
     InstanceView instance_{};
+    ProjectionView projection_{};
     ShadingContext context_{};
     std::vector<LightView> lights_;
 };
@@ -208,9 +214,10 @@ TEST(ChainInputs, ReachEveryKindOfResult) {
     const auto as_number = [](std::uint32_t bits) { return std::bit_cast<float>(bits); };
     const std::set<std::uint32_t> codes(plane(0).begin(), plane(0).end());
     EXPECT_GE(codes.size(), 12u);
-    constexpr int kBarycentric = 12, kRadiance = 61, kRed = 65;
-    const auto inside = [&](std::uint32_t b) { return as_number(b) > 0 && as_number(b) < 1; };
-    EXPECT_GT(share(kBarycentric, inside), 0.2);
+    constexpr int kDistance = chain_plane("position and normals") + 2, kU = chain_plane("uv and footprint"),
+                  kRadiance = chain_plane("radiance"), kRed = chain_plane("film");
+    EXPECT_GT(share(kDistance, [&](std::uint32_t b) { return as_number(b) < -0.5f && as_number(b) > -20; }), 0.5);
+    EXPECT_GT(share(kU, [&](std::uint32_t b) { return as_number(b) > -10 && as_number(b) < 10; }), 0.5);
     for (int c = 0; c < 3; ++c)
         EXPECT_GT(share(kRadiance + c, [&](std::uint32_t b) { return as_number(b) > 0 && as_number(b) < 1e4f; }), 0.6);
     EXPECT_EQ(share(kRadiance, is_nan), 0);
@@ -264,7 +271,7 @@ TEST_P(ChainTest, MirroredInstancesOrthographicViewsAndMissingAttributes) {
     const MaterialView m = textured(ShadingModel::kMetallicRoughness, textures);
     world_.instance().handedness = -1;
     expect_same(m, 31, false, "mirrored");
-    world_.context().orthographic = true;
+    world_.make_orthographic();
     expect_same(m, 32, false, "orthographic");
     world_.instance().mesh.tangents = world_.instance().mesh.colors = nullptr;
     world_.instance().mesh.uvs[1] = nullptr;

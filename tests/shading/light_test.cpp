@@ -174,6 +174,23 @@ TEST(LIT1_Ambient, UniformIsTheSameFromEveryDirection) {
             EXPECT_EQ(ambient_radiance(ambient, random.unit(), softness).y, 0.37f);
 }
 
+// The flag leaves out work, never a bit.
+TEST(LIT1_Ambient, TheFlagOfUniformLightChangesNothing) {
+    test::Random random(3);
+    for (int i = 0; i < 1000; ++i) {
+        const float r = random.in(0, 5), g = random.in(0, 1), b = random.in(0, 0.01f);
+        AmbientView flagged{{r, g, b}, {r, g, b}, {0, 1, 0}, true}, plain = flagged;
+        plain.uniform = false;
+        const Vec3T<float> direction = random.unit();
+        const float softness = random.in(0, 1);
+        const Vec3T<float> a = ambient_radiance(flagged, direction, softness),
+                           c = ambient_radiance(plain, direction, softness);
+        ASSERT_EQ(a.x, c.x);
+        ASSERT_EQ(a.y, c.y);
+        ASSERT_EQ(a.z, c.z);
+    }
+}
+
 TEST(LIT1_Ambient, SkyAboveGroundBelowMonotoneBetween) {
     const AmbientView ambient{{1, 2, 3}, {0.5f, 0.25f, 0}, {0, 1, 0}};
     for (const float softness : {0.0f, 0.5f, 1.0f}) {

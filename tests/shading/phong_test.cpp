@@ -171,5 +171,23 @@ TEST(LIT2_Unlit, ShowsItsColourWhateverTheLight) {
     EXPECT_EQ(p.radiance.y, 0.25f);
 }
 
+// Whole exponents are powers by multiplication: each product doubles the error that is there and rounds
+// once, so the whole power is right to about one rounding per unit of the exponent.
+TEST(LIT2_Power, WholeExponentsByMultiplicationAndOthersByPow) {
+    test::Random random(14);
+    for (int i = 0; i < 40000; ++i) {
+        const float x = random.in(0.01f, 1);
+        const float exponent = i % 2 ? static_cast<float>(1 + random.below(1024)) : random.in(0.1f, 1200);
+        const Real want = std::pow(static_cast<Real>(x), static_cast<Real>(exponent));
+        if (want < 1e-37L) continue;
+        const Real tolerance = i % 2 ? exponent * 0x1p-24L * 1.01L : 2e-5L;
+        ASSERT_LE(std::fabs(power_cosine(x, exponent) - want), want * tolerance) << x << "^" << exponent;
+    }
+    for (const float exponent : {0.0f, 0.5f, 1.0f, 2.0f, 31.0f, 1024.0f, 1025.0f}) {
+        EXPECT_EQ(power_cosine(1.0f, exponent), 1.0f) << exponent;
+        EXPECT_EQ(power_cosine(-0.5f, exponent), exponent == 0 ? 1.0f : 0.0f) << exponent;
+    }
+}
+
 }  // namespace
 }  // namespace tessera

@@ -1,6 +1,7 @@
 #include "simd/operations.h"
 
 #include "simd/math.h"
+#include "simd/records.h"
 #include "simd/vec.h"
 
 namespace tessera::TESSERA_ISA_NAMESPACE {
@@ -122,6 +123,9 @@ constexpr Operation kOperations[] = {
     operation("ceil", [](Float a) { return ceil(a); }),
     operation("trunc", [](Float a) { return trunc(a); }),
     operation("to_int", [](Float a) { return to_int(a); }),
+    // Defined for |a| < 2^31.
+    operation("nearest_int", [](Float a) { return nearest_int(select(abs(a) < 0x1p31f, a, Float(0.0f))); }),
+    operation("truncate_int", [](Float a) { return truncate_int(select(abs(a) < 0x1p31f, a, Float(0.0f))); }),
     operation("select", [](Float a, Float b, Mask c) { return select(c, a, b); }),
     operation("as_int", [](Float a) { return as_int(a); }),
     operation("as_uint", [](Float a) { return as_uint(a) ^ 0x80000000u; }),
@@ -134,6 +138,7 @@ constexpr Operation kOperations[] = {
     operation("int_abs", [](Int a) { return abs(a); }),
     operation("int_and", [](Int a, Int b) { return a & b; }),
     operation("int_or", [](Int a, Int b) { return a | b; }),
+    operation("int_or3", [](Int a, Int b, Int c) { return or3(a, b, c); }),
     operation("int_xor", [](Int a, Int b) { return a ^ b; }),
     operation("int_not", [](Int a) { return ~a; }),
     operation("int_compound", [](Int a, Int b, Int c) { return a &= b, a |= c, a ^= b, a >>= 3, a <<= 2, a; }),
@@ -158,6 +163,7 @@ constexpr Operation kOperations[] = {
     operation("uint_multiply", [](Uint a, Uint b) { return a * b; }),
     operation("uint_and", [](Uint a, Uint b) { return a & b; }),
     operation("uint_or", [](Uint a, Uint b) { return a | b; }),
+    operation("uint_or3", [](Uint a, Uint b, Uint c) { return or3(a, b, c); }),
     operation("uint_xor", [](Uint a, Uint b) { return a ^ b; }),
     operation("uint_not", [](Uint a) { return ~a; }),
     operation("uint_less", [](Uint a, Uint b) { return a < b; }),

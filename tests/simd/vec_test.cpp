@@ -70,6 +70,20 @@ TYPED_TEST(PlainTest, ConversionToIntegersSaturates) {
               std::ldexp(TypeParam(1), 8 * int(sizeof(TypeParam))));
 }
 
+TEST(Plain, NearestAndTruncatedIntegersAreThoseOfTheDefinition) {
+    for (const std::uint32_t bits : special_bits()) {
+        const float x = as_float(bits);
+        if (!(std::fabs(x) < 0x1p31f)) continue;
+        EXPECT_EQ(nearest_int(x), static_cast<std::int32_t>(std::nearbyint(x))) << std::hexfloat << x;
+        EXPECT_EQ(truncate_int(x), static_cast<std::int32_t>(x)) << std::hexfloat << x;
+    }
+    for (std::int32_t half = -2001; half < 2002; half += 2) {  // ties
+        const float x = 0.5f * static_cast<float>(half);
+        EXPECT_EQ(nearest_int(x) % 2, 0) << x;
+        EXPECT_EQ(std::fabs(static_cast<float>(nearest_int(x)) - x), 0.5f) << x;
+    }
+}
+
 TYPED_TEST(PlainTest, MinAndMaxGiveTheSecondOperandForNanAndZeros) {
     using T = TypeParam;
     const T nan = std::numeric_limits<T>::quiet_NaN(), zero = 0;
