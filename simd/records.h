@@ -53,7 +53,7 @@ TESSERA_INLINE Float load_quarters(Pointer&& pointer) {
     if constexpr (kCount == 4) {
         return Float(hn::LoadU(d4, pointer(0)));
     } else {
-        const hn::FixedTag<float, kCount < 8 ? kCount : 8> d8;
+        const hn::FixedTag < float, kCount<8 ? kCount : 8> d8;
         const auto low = hn::Combine(d8, hn::LoadU(d4, pointer(1)), hn::LoadU(d4, pointer(0)));
         if constexpr (kCount == 8) {
             return Float(low);
@@ -73,7 +73,7 @@ TESSERA_INLINE void store_quarters(Pointer&& pointer, V a) {
         hn::StoreU(hn::LowerHalf(d4, a.v), d4, pointer(0));
         hn::StoreU(hn::UpperHalf(d4, a.v), d4, pointer(1));
     } else {
-        const hn::FixedTag<float, kCount < 8 ? kCount : 8> d8;
+        const hn::FixedTag < float, kCount<8 ? kCount : 8> d8;
         const auto low = hn::LowerHalf(d8, a.v), high = hn::UpperHalf(d8, a.v);
         hn::StoreU(hn::LowerHalf(d4, low), d4, pointer(0));
         hn::StoreU(hn::UpperHalf(d4, low), d4, pointer(1));

@@ -55,10 +55,10 @@ inline void develop_tile(const DevelopJob& job) {
         const Float alpha = load<Float>(job.alpha + at);
         Uint pixels = background;
         if (any(alpha != zero))
-            pixels = display_pixels(job.film,
-                                    {load<Float>(job.r + at) * weight, load<Float>(job.g + at) * weight,
-                                     load<Float>(job.b + at) * weight},
-                                    alpha * weight);
+            pixels = display_pixels(
+                job.film,
+                {load<Float>(job.r + at) * weight, load<Float>(job.g + at) * weight, load<Float>(job.b + at) * weight},
+                alpha * weight);
         store_pixels(pixels, job.rgba, job.stride, x, y, job.width, job.height);
     });
 }

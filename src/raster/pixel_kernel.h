@@ -22,7 +22,8 @@ TESSERA_INLINE void store_pixels(const Uint& values, unsigned char* first_pixel,
     constexpr int kColumns = kLanes<Float> < kBlockSide ? kLanes<Float> : kBlockSide;
     for (int row = 0; row < kRows; ++row) {
         if (y + row >= height) return;
-        unsigned char* const to = first_pixel + static_cast<std::size_t>(y + row) * stride + 4 * static_cast<std::size_t>(x);
+        unsigned char* const to =
+            first_pixel + static_cast<std::size_t>(y + row) * stride + 4 * static_cast<std::size_t>(x);
         if (x + kColumns <= width)
             __builtin_memcpy(to, all + row * kColumns, 4 * kColumns);
         else if (x < width)

@@ -141,8 +141,8 @@ struct SurfaceSource {
 };
 
 struct TileCounters {
-    std::uint64_t samples_covered = 0;   // inside a triangle and tested for depth
-    std::uint64_t fragments_passed = 0;  // and in front
+    std::uint64_t samples_covered = 0;                  // inside a triangle and tested for depth
+    std::uint64_t fragments_passed = 0;                 // and in front
     std::uint64_t blocks_drawn = 0, blocks_hidden = 0;  // of large triangles, by hierarchical Z
 };
 
@@ -156,9 +156,9 @@ struct VisibilityJob {
     std::uint32_t bin_count;
     const SurfaceSource* source;
     bool hierarchical_z, count;
-    float* depth;            // by pixel; infinite outside the picture
-    std::uint32_t* ordinal;  // by pixel
-    float* floor;            // by block: no depth in it is lower
+    float* depth;             // by pixel; infinite outside the picture
+    std::uint32_t* ordinal;   // by pixel
+    float* floor;             // by block: no depth in it is lower
     TileTriangle* triangles;  // out: by ordinal - 1
     TileCounters counters;
     // Receives one transparent fragment.
@@ -198,9 +198,9 @@ struct ShadeJob {
     int x0, y0, side;
     SamplePosition offset;
     const std::uint32_t* ordinal;
-    bool first;           // store the sums instead of adding to them
+    bool first;                        // store the sums instead of adding to them
     const struct DevelopJob* develop;  // one sample a pixel: develop at once, without sums; else null
-    std::uint64_t* hit;   // by block: bit per pixel
+    std::uint64_t* hit;                // by block: bit per pixel
     // Or a list of points, padded to kMaxLanes.
     const std::int32_t *x, *y;  // picture positions
     const std::uint32_t* list;  // ordinals
@@ -211,7 +211,7 @@ struct ShadeJob {
 // Develops a tile: sums over the samples in, display values out. Without sums (r is null): background.
 struct DevelopJob {
     FilmView film;
-    float weight;  // one over the number of samples
+    float weight;             // one over the number of samples
     int side, width, height;  // width and height: within the picture
     const float *r, *g, *b, *alpha;
     std::uint8_t* rgba;  // the tile's first pixel

@@ -151,7 +151,9 @@ inline void setup(SetupJob& job) {
         std::uint32_t small = 0;
         Uint rows[2];
         if (job.masks && kept) {
-            const Int width = box.right - box.left, height = box.bottom - box.top;
+            // Beyond the picture too, so that a mask does not depend on its neighbours' sizes.
+            const Int width = ((high_x - Int(job.sample.x)) >> 8) - box.left;
+            const Int height = ((high_y - Int(job.sample.y)) >> 8) - box.top;
             const Mask fits = keep & (max(width, height) < Int(kBlockSide));
             if (any(fits)) {
                 const bool wide = any(fits & (width > Int(3))), high = any(fits & (height > Int(3)));
@@ -168,13 +170,13 @@ inline void setup(SetupJob& job) {
         if (kept) {
             const DepthPlane<Float> depth = depth_plane(p, z);
             const Uint number = as_uint(iota<Int>()) + Uint(job.first + t);
-            store_records([&](int i) { return made[i]; }, as_float(depth.anchor_x),
-                          as_float(depth.anchor_y), depth.depth, depth.ddx);
-            store_records([&](int i) { return made[i] + 4; }, depth.ddy, depth.lowest,
-                          depth.highest, as_float((box.top << 16) | box.left));
+            store_records([&](int i) { return made[i]; }, as_float(depth.anchor_x), as_float(depth.anchor_y),
+                          depth.depth, depth.ddx);
+            store_records([&](int i) { return made[i] + 4; }, depth.ddy, depth.lowest, depth.highest,
+                          as_float((box.top << 16) | box.left));
             if (small) {
-                store_records([&](int i) { return made[i] + 8; }, as_float(rows[0]),
-                              as_float(rows[1]), as_float(number), as_float(Uint(job.instance_index)));
+                store_records([&](int i) { return made[i] + 8; }, as_float(rows[0]), as_float(rows[1]),
+                              as_float(number), as_float(Uint(job.instance_index)));
                 const Int first_x = box.left >> job.tile_shift, first_y = box.top >> job.tile_shift;
                 const Int last_tile_x = box.right >> job.tile_shift, last_tile_y = box.bottom >> job.tile_shift;
                 const Int tile = first_y * Int(job.tile_columns) + first_x;

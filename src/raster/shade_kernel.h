@@ -64,7 +64,8 @@ TESSERA_INLINE void sample_lanes(const ShadeJob& job, const Uint& ordinals, std:
     store(ordinal, ordinals);
     const auto record_of = [&](int lane) { return job.records + job.record_of[ordinal[lane]]; };
     const auto sample_of = [&](const float* record, SurfaceSample<Float>& out) {
-        sample_planes(l, x, y, [record](int i) { return Float(record[i]); }, out);
+        sample_planes(
+            l, x, y, [record](int i) { return Float(record[i]); }, out);
     };
     // The few triangles that the lanes show, and who shows them.
     int first[kFew] = {}, few = 0;
@@ -95,9 +96,10 @@ TESSERA_INLINE void sample_lanes(const ShadeJob& job, const Uint& ordinals, std:
     const float* records[kWidth];
     for (int lane = 0; lane < kWidth; ++lane) records[lane] = record_of(lane);
     for (int i = 0; i < floats; i += 4)
-        load_records([&](int lane) { return records[lane] + i; }, numbers[i], numbers[i + 1],
-                     numbers[i + 2], numbers[i + 3]);
-    sample_planes(l, x, y, [&numbers](int i) { return numbers[i]; }, sample);
+        load_records([&](int lane) { return records[lane] + i; }, numbers[i], numbers[i + 1], numbers[i + 2],
+                     numbers[i + 3]);
+    sample_planes(
+        l, x, y, [&numbers](int i) { return numbers[i]; }, sample);
     side = numbers[2];
     sign = numbers[3];
 }
@@ -108,8 +110,8 @@ TESSERA_INLINE ShadedPoint<Float> shade_lanes(const Batch& batch, const Uint& or
     SurfaceSample<Float> sample;
     Float side, sign;
     sample_lanes<Kind>(batch.job, ordinals, used, x, y, sample, side, sign);
-    const SurfacePoint<Float> s = surface_point(Kind::layout(batch.job), batch.rays, sample, x, y, side, sign,
-                                                batch.context.footprint_scale);
+    const SurfacePoint<Float> s =
+        surface_point(Kind::layout(batch.job), batch.rays, sample, x, y, side, sign, batch.context.footprint_scale);
     return shade<Kind::kTextured>(batch.context, batch.material, s,
                                   [](int, const LightSample<Float>&) { return Float(1.0f); });
 }
@@ -124,8 +126,8 @@ TESSERA_INLINE void for_each_batch(const ShadeJob& job, Visit&& visit) {
     if (job.list) {
         for (std::uint32_t i = 0; i < job.count; i += kWidth) {
             const std::uint32_t left = job.count - i;
-            visit(load<Uint>(job.list + i), left < kWidth ? (1u << left) - 1 : kAllLanes, to_float(load<Int>(job.x + i)),
-                  to_float(load<Int>(job.y + i)), static_cast<int>(i));
+            visit(load<Uint>(job.list + i), left < kWidth ? (1u << left) - 1 : kAllLanes,
+                  to_float(load<Int>(job.x + i)), to_float(load<Int>(job.y + i)), static_cast<int>(i));
         }
         return;
     }
@@ -185,8 +187,7 @@ inline void shade_tile_as(const ShadeJob& job) {
             return;
         }
         const Mask covered = ordinals != Uint(0u);
-        const ShadedPoint<Float> c =
-            shade_lanes<Kind>(batch, ordinals, used, x, y);
+        const ShadedPoint<Float> c = shade_lanes<Kind>(batch, ordinals, used, x, y);
         const auto add = [&](float* plane, Float v) {
             const Float before = job.first ? zero : load<Float>(plane + at);
             store(plane + at, before + select(covered, v, zero));
@@ -203,8 +204,7 @@ template <class Kind>
 inline void shade_points_as(const ShadeJob& job) {
     const Batch batch(job);
     for_each_batch(job, [&](const Uint& ordinals, std::uint32_t used, Float x, Float y, int at) {
-        const ShadedPoint<Float> c =
-            shade_lanes<Kind>(batch, ordinals, used, x, y);
+        const ShadedPoint<Float> c = shade_lanes<Kind>(batch, ordinals, used, x, y);
         store(job.r + at, c.radiance.x);
         store(job.g + at, c.radiance.y);
         store(job.b + at, c.radiance.z);

@@ -8,8 +8,7 @@
 namespace tessera::TESSERA_ISA_NAMESPACE {
 
 TESSERA_INLINE SurfaceLayout layout_of(const SurfaceSource& source, const InstanceView& instance) {
-    return surface_layout(instance.mesh, source.shading->materials[instance.material],
-                          source.projection.orthographic);
+    return surface_layout(instance.mesh, source.shading->materials[instance.material], source.projection.orthographic);
 }
 
 // The arrays of a mesh that a layout needs.
@@ -140,10 +139,10 @@ TESSERA_INLINE Mask cut_out(const SurfaceSource& source, std::uint32_t instance,
                             const float* record, Float x, Float y) {
     const MaterialView& material = source.shading->materials[source.instances[instance].material];
     SurfaceSample<Float> sample;
-    sample_planes(layout, x, y, [record](int i) { return Float(record[i]); }, sample);
-    const SurfacePoint<Float> s =
-        surface_point(layout, PictureRays(source.projection), sample, x, y, Float(record[2]), Float(record[3]),
-                      source.shading->footprint_scale);
+    sample_planes(
+        layout, x, y, [record](int i) { return Float(record[i]); }, sample);
+    const SurfacePoint<Float> s = surface_point(layout, PictureRays(source.projection), sample, x, y, Float(record[2]),
+                                                Float(record[3]), source.shading->footprint_scale);
     return base_color(material, s).w < Float(material.alpha_cutoff);
 }
 

@@ -33,13 +33,11 @@ TileTask::TileTask(const Frame& f, const ShadingContext& s, const RasterSettings
     std::vector<std::vector<std::uint32_t>> kinds;
     for (std::uint32_t i = 0; i < f.instances.size(); ++i) {
         const InstanceView& instance = f.instances[i];
-        layouts.push_back(
-            surface_layout(instance.mesh, s.materials[instance.material], f.projection.orthographic));
+        layouts.push_back(surface_layout(instance.mesh, s.materials[instance.material], f.projection.orthographic));
         if (kinds.size() <= instance.material) kinds.resize(instance.material + 1);
         std::vector<std::uint32_t>& same_material = kinds[instance.material];
-        const auto found = std::find_if(same_material.begin(), same_material.end(), [&](std::uint32_t other) {
-            return layouts[other] == layouts[i];
-        });
+        const auto found = std::find_if(same_material.begin(), same_material.end(),
+                                        [&](std::uint32_t other) { return layouts[other] == layouts[i]; });
         batch_of.push_back(found == same_material.end() ? i : *found);
         if (batch_of[i] == i) same_material.push_back(i);
     }
@@ -340,8 +338,7 @@ void Tile::compose_fragments(SamplePosition offset) {
     for (std::size_t i = 0; i < point_pixel_.size(); ++i) {
         const std::uint32_t pixel = point_pixel_[i];
         const float a = point_color_[3][i];
-        for (std::size_t c = 0; c < 3; ++c)
-            sample_[c][pixel] = point_color_[c][i] * a + sample_[c][pixel] * (1.0f - a);
+        for (std::size_t c = 0; c < 3; ++c) sample_[c][pixel] = point_color_[c][i] * a + sample_[c][pixel] * (1.0f - a);
         sample_[3][pixel] = a + sample_[3][pixel] * (1.0f - a);
         hit_[pixel / kBlockPixels] |= std::uint64_t{1} << pixel % kBlockPixels;
     }
@@ -400,8 +397,7 @@ void Tile::fill_background() {
     if (!task_->targets.linear) return;
     const auto picture_width = static_cast<std::size_t>(task_->frame.projection.width);
     for (int y = 0; y < height_; ++y)
-        std::fill_n(task_->targets.linear +
-                        4 * (picture_place(0) + static_cast<std::size_t>(y) * picture_width),
+        std::fill_n(task_->targets.linear + 4 * (picture_place(0) + static_cast<std::size_t>(y) * picture_width),
                     4 * width_, 0.0f);
 }
 

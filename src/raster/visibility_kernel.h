@@ -101,8 +101,8 @@ TESSERA_INLINE float least_depth(const float* depth) {
 // A block that lies inside all edges, of an opaque triangle: nothing but the depth test. `clamps` where
 // the plane leaves the triangle's range.
 template <bool kClamps>
-TESSERA_INLINE bool fill_inside(const LargeFill& f, const Float (&x_part)[kPerRow], const Float* row_part,
-                                float* depth, std::uint32_t* ordinal) {
+TESSERA_INLINE bool fill_inside(const LargeFill& f, const Float (&x_part)[kPerRow], const Float* row_part, float* depth,
+                                std::uint32_t* ordinal) {
     const Float lowest(f.t.depth.lowest), highest(f.t.depth.highest);
     const Uint id(f.ordinal);
     Mask all_pass(true);
@@ -132,8 +132,8 @@ TESSERA_INLINE void fill_block(VisibilityJob& job, const LargeFill& f, int block
     const Float* row_part = f.row_parts + (block_y - f.top) * (kBlockSide / kRows);
     Float x_part[kPerRow];
     for (int j = 0; j < kPerRow; ++j)
-        x_part[j] = Float(plane.ddx) *
-                    to_float(((columns + Int(px + j * kLanes<Float>)) << 8) + Int(f.x0 - plane.anchor_x));
+        x_part[j] =
+            Float(plane.ddx) * to_float(((columns + Int(px + j * kLanes<Float>)) << 8) + Int(f.x0 - plane.anchor_x));
     if constexpr (kKind == FillKind::kOpaque && !kCount)
         if (inside) {
             const float farthest = depth_at_corner(f, px, py, false);
@@ -200,8 +200,7 @@ TESSERA_INLINE void fill_block(VisibilityJob& job, const LargeFill& f, int block
 
 // Classifies as many blocks at a time as there are lanes, then fills those that are left.
 template <FillKind kKind, bool kCount>
-TESSERA_INLINE void fill_blocks(VisibilityJob& job, LargeFill& f, const float* record,
-                                const SurfaceLayout* layout) {
+TESSERA_INLINE void fill_blocks(VisibilityJob& job, LargeFill& f, const float* record, const SurfaceLayout* layout) {
     constexpr int kWidth = kLanes<Float>;
     const int blocks = job.side / kBlockSide, shift = __builtin_ctz(static_cast<unsigned>(blocks));
     const SnappedVertex* v = f.t.v;
@@ -210,7 +209,8 @@ TESSERA_INLINE void fill_blocks(VisibilityJob& job, LargeFill& f, const float* r
         return b < 0 ? 0 : b > blocks - 1 ? blocks - 1 : b;
     };
     const std::int32_t x = 256 * job.x0, y = 256 * job.y0;
-    const int left = block_of(least_of(v[0].x, v[1].x, v[2].x) - x), top = block_of(least_of(v[0].y, v[1].y, v[2].y) - y);
+    const int left = block_of(least_of(v[0].x, v[1].x, v[2].x) - x),
+              top = block_of(least_of(v[0].y, v[1].y, v[2].y) - y);
     const int right = block_of(most_of(v[0].x, v[1].x, v[2].x) - x),
               bottom = block_of(most_of(v[0].y, v[1].y, v[2].y) - y);
     if (top > bottom) return;

@@ -43,9 +43,9 @@ SurfacePoint<float> SurfaceSampler::point(std::uint32_t triangle, SamplePosition
     fetch_planes(triangle);
     const float x = static_cast<float>(at.x), y = static_cast<float>(at.y), side = record_[2];
     SurfaceSample<float> sample;
-    sample_planes(layout_, x, y, [this](int i) { return record_[i]; }, sample);
-    SurfacePoint<float> s =
-        surface_point(layout_, rays_, sample, x, y, side, record_[3], context_.footprint_scale);
+    sample_planes(
+        layout_, x, y, [this](int i) { return record_[i]; }, sample);
+    SurfacePoint<float> s = surface_point(layout_, rays_, sample, x, y, side, record_[3], context_.footprint_scale);
     s.geometric_normal = geometric_normal_ * side;
     return s;
 }
@@ -56,9 +56,7 @@ float SurfaceSampler::alpha(std::uint32_t triangle, const double (&barycentric)[
     const Corner<float> corners[3] = {corner(index, 0), corner(index, 1), corner(index, 2)};
     Barycentrics<float> b{};
     for (int i = 0; i < 3; ++i) b.b[i] = static_cast<float>(barycentric[i]);
-    return base_color(material(triangle),
-                      surface_point(*instance_, corners, b, 1.0f, context_.footprint_scale))
-        .w;
+    return base_color(material(triangle), surface_point(*instance_, corners, b, 1.0f, context_.footprint_scale)).w;
 }
 
 float SurfaceSampler::alpha(std::uint32_t triangle, SamplePosition at) {

@@ -11,7 +11,8 @@ namespace tessera {
 class SurfaceSampler {
   public:
     // Both must outlive the sampler.
-    SurfaceSampler(const Frame& frame, const ShadingContext& context) : frame_(frame), context_(context), rays_(frame.projection) {}
+    SurfaceSampler(const Frame& frame, const ShadingContext& context)
+        : frame_(frame), context_(context), rays_(frame.projection) {}
 
     // `triangle` is a number in the frame (0-based); `at` a position inside its picture.
     SurfacePoint<float> point(std::uint32_t triangle, SamplePosition at);

@@ -21,7 +21,8 @@ constexpr std::size_t kMostFragmentsPerTile = 512 * 64 * 64;
 // sums and its flag; a stage's numbers.
 std::uint64_t picture_bytes(const RenderOptions& o) {
     const auto pixels = static_cast<std::uint64_t>(o.width) * static_cast<std::uint64_t>(o.height);
-    return pixels * (4 + 4 + 16 + 4 + (o.filter == PixelFilter::kBox ? 0 : 16 + 1) + (o.show == Stage::kPicture ? 0 : 4));
+    return pixels *
+           (4 + 4 + 16 + 4 + (o.filter == PixelFilter::kBox ? 0 : 16 + 1) + (o.show == Stage::kPicture ? 0 : 4));
 }
 
 void check_stage(const RenderOptions& o) {

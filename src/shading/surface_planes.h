@@ -39,7 +39,9 @@ inline constexpr int kMaxSurfacePlanes = 1 + 3 + 3 + 4 + 1 + 2 * kMaxUvSets;
 // the bitangent), then three floats per plane, padded to a multiple of four.
 inline constexpr int kSurfaceHeader = 4;
 inline constexpr int kMaxSurfaceFloats = (kSurfaceHeader + 3 * kMaxSurfacePlanes + 3) / 4 * 4;
-TESSERA_INLINE constexpr int surface_floats(const SurfaceLayout& layout) { return (kSurfaceHeader + 3 * layout.count + 3) / 4 * 4; }
+TESSERA_INLINE constexpr int surface_floats(const SurfaceLayout& layout) {
+    return (kSurfaceHeader + 3 * layout.count + 3) / 4 * 4;
+}
 
 TESSERA_INLINE SurfaceLayout surface_layout(const MeshView& mesh, const MaterialView& material, bool orthographic) {
     SurfaceLayout l;
@@ -214,13 +216,12 @@ TESSERA_INLINE SurfacePoint<F> surface_point(const SurfaceLayout& l, const Pictu
         s.position = {ray_x * w, ray_y * w, -w};
     s.side = side;
     s.geometric_normal = s.tangent = s.bitangent = none;
-    s.normal = l.normal >= 0 ? normalize_or(Vec3T<F>{v[l.normal], v[l.normal + 1], v[l.normal + 2]}, toward_eye)
-                             : toward_eye;
+    s.normal =
+        l.normal >= 0 ? normalize_or(Vec3T<F>{v[l.normal], v[l.normal + 1], v[l.normal + 2]}, toward_eye) : toward_eye;
     if (l.tangent >= 0)
         set_tangent_frame(s, s.normal * side, {v[l.tangent], v[l.tangent + 1], v[l.tangent + 2]}, bitangent_sign);
     s.color = {one, one, one, one};
-    if (l.color >= 0)
-        s.color = {v[l.color] * w, v[l.color + 1] * w, v[l.color + 2] * w, v[l.color + 3] * w};
+    if (l.color >= 0) s.color = {v[l.color] * w, v[l.color + 1] * w, v[l.color + 2] * w, v[l.color + 3] * w};
     for (int set = 0; set < kMaxUvSets; ++set) {
         s.uv[set] = {zero, zero};
         s.footprint[set] = {zero, zero, zero, zero};
@@ -230,9 +231,8 @@ TESSERA_INLINE SurfacePoint<F> surface_point(const SurfaceLayout& l, const Pictu
         // The quotient rule, per pixel instead of 1/256 of it.
         const F scale = w * F(256.0f * footprint_scale);
         const Footprint<F>& p = sample.uv_plane[set];
-        s.footprint[set] = {
-            (p.ux - uv.x * sample.inverse_w_ddx) * scale, (p.vx - uv.y * sample.inverse_w_ddx) * scale,
-            (p.uy - uv.x * sample.inverse_w_ddy) * scale, (p.vy - uv.y * sample.inverse_w_ddy) * scale};
+        s.footprint[set] = {(p.ux - uv.x * sample.inverse_w_ddx) * scale, (p.vx - uv.y * sample.inverse_w_ddx) * scale,
+                            (p.uy - uv.x * sample.inverse_w_ddy) * scale, (p.vy - uv.y * sample.inverse_w_ddy) * scale};
     }
     return s;
 }

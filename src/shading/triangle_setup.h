@@ -1,7 +1,7 @@
 // What the picture makes of one triangle: rejected, degenerate, or snapped vertices, orientation, the
-// canonical depth plane, the planes of the surface. Scalar, by definition rather than for speed: the reference engines draw
-// from it, and every tracing engine recomputes the depth of its hits from it. Picture coordinates in
-// 24.8 fixed point, y down.
+// canonical depth plane, the planes of the surface. Scalar, by definition rather than for speed: the reference engines
+// draw from it, and every tracing engine recomputes the depth of its hits from it. Picture coordinates in 24.8 fixed
+// point, y down.
 #pragma once
 
 #include "shading/surface_planes.h"
