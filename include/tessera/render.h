@@ -49,6 +49,24 @@ enum class Lighting : std::uint8_t {
     kStudio,  // three directional lights and ambient light, fixed to the camera
 };
 
+// What the samples of a pixel and its neighbours count for its colour, by their distance from its centre.
+// The wider ones draw the picture once per sample. Labels are not filtered.
+enum class PixelFilter : std::uint8_t {
+    kBox,       // the mean of the pixel's own samples
+    kTent,      // radius of 1 pixel
+    kGaussian,  // radius of 1.5 pixels, sigma of 1/2
+    kMitchell,  // radius of 2 pixels: Mitchell and Netravali 1988, B = C = 1/3; sharpest, slight halos
+};
+
+// A stage of the tile rasterizer, as a number per pixel. How they come about: docs/rasterizer.md.
+enum class Stage : std::uint8_t {
+    kPicture,   // none: the picture
+    kBins,      // triangles in the pixel's tile
+    kHiZ,       // hierarchical Z of its block of 8x8: the lowest reversed depth (0: far), after the last sample
+    kOverdraw,  // samples of the pixel that were tested for depth
+    kCost,      // cycles that the pixel's tile may have taken: counted and weighed, not timed
+};
+
 // How the tile rasterizer works: its speed and its statistics, never a pixel.
 struct RasterTuning {
     int tile_side = 0;           // 32, 64 or 128 pixels; 0: chosen by picture and threads
@@ -68,8 +86,13 @@ struct RenderOptions {
     int samples = 4;                   // per pixel, 1 .. 256, at fixed positions of 1/256 pixel
     std::optional<float> exposure_ev;  // radiance * 2^ev; unset: automatic
     ToneMap tone_map = ToneMap::kNeutral;
+    PixelFilter filter = PixelFilter::kBox;
     Encoding encoding = Encoding::kSrgb;                // of the colour plane
     std::optional<Vec4> background = Vec4{1, 1, 1, 1};  // RGB as the colour plane stores it, alpha; unset: transparent
+    // In place of the picture the colour plane shows this stage in false colours, black for 0 and white for
+    // the most: display codes that neither film nor background touch. Only the tile rasterizer has stages,
+    // and not under a filter wider than the pixel. Equal bits for equal tile sides.
+    Stage show = Stage::kPicture;
     RasterTuning raster;
     int threads = 0;  // 0: what the process may use
     Isa isa = Isa::kAuto;
@@ -95,10 +118,11 @@ struct RenderStats {
     // tested for depth; blocks of 8x8 pixels filled, and left out by hierarchical Z.
     std::uint64_t culled_no_sample = 0, small_triangles = 0, large_triangles = 0;
     std::uint64_t samples_tested = 0, blocks_drawn = 0, blocks_hidden = 0;
-    std::uint64_t pixels_covered = 0;                       // with at least one sample hit, or labelled
-    std::uint64_t fragments_passed = 0;                     // samples that passed the depth test (raster), hits (trace)
-    std::uint64_t color_hash = 0;                           // hash_pixels() of the colour plane, by render() only
-    double exposure = 1;                                    // factor on radiance
+    int tile_side = 0;                   // pixels
+    std::uint64_t pixels_covered = 0;    // with at least one sample hit, or labelled; filtered: of alpha > 0
+    std::uint64_t fragments_passed = 0;  // samples that passed the depth test (raster), hits (trace)
+    std::uint64_t color_hash = 0;        // hash_pixels() of the colour plane, by render() only
+    double exposure = 1;                 // factor on radiance
     std::vector<std::pair<std::string, double>> phases_ms;  // wall time by phase, in order
     double frame_ms = 0, cpu_ms = 0;
 };
@@ -106,9 +130,11 @@ struct RenderStats {
 // The planes that were wanted; the others are empty.
 struct RenderResult {
     Image color;      // kRgba8, display-ready, straight alpha
-    Image linear;     // kRgba32f, scene radiance before exposure, premultiplied alpha, no background
+    Image linear;     // kRgba32f, scene radiance before exposure, premultiplied alpha, no background;
+                      // filtered: kMitchell may leave radiances a little below 0
     Image depth;      // kF32, metres along the view axis; infinite where nothing was hit
     Image primitive;  // kU32, 1 + number of the triangle in submission order; 0: none
+    Image stage;      // the numbers of RenderOptions::show: kU32, or kF32 for kHiZ
     RenderStats stats;
     std::vector<std::string> warnings;
 };

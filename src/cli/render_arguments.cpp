@@ -51,6 +51,16 @@ View parse_view(const RenderArguments& a, bool& z_is_up) {
     return view;
 }
 
+Stage parse_stage(const RenderArguments& a, const RenderOptions& render) {
+    if (a.show.empty()) return Stage::kPicture;
+    const Stage stage = choose<Stage>(
+        "--show", a.show,
+        {{"bins", Stage::kBins}, {"hiz", Stage::kHiZ}, {"overdraw", Stage::kOverdraw}, {"cost", Stage::kCost}});
+    if (render.engine != Engine::kRaster) refuse("--show", "needs --engine raster: " + a.engine + " has no tiles");
+    if (render.filter != PixelFilter::kBox) refuse("--show", "needs --filter box");
+    return stage;
+}
+
 Codec parse_codec(const std::string& output) {
     const std::string name = lower(output);
     if (output == "-" || output.empty() || ends_with(name, ".png")) return Codec::kPng;
@@ -100,12 +110,16 @@ void add_render_options(CLI::App& app, RenderArguments& a) {
     option("Input and output", "--color-bits", a.color_bits, "R-G-B",
            "reduce to so many bits a channel, such as 3-3-2");
     option("Input and output", "--aov", a.aov, "LIST", "planes to write: color");
-    app.add_flag("-q,--quiet", a.quiet, "no warnings and no progress bar")->group("Input and output");
+    app.add_flag("-q,--quiet", a.quiet, "nothing on stderr but errors")->group("Input and output");
 
     option("Picture", "-s,--size", a.size, "WxH", "size in pixels (default 1024x768)");
     option("Picture", "--engine", a.engine, "NAME",
            "raster (the default), reference-raster (the same bits, slowly) or reference-trace (hard shadows)");
     option("Picture", "--samples", a.samples, "N", "samples per pixel, 1 .. 256 (default 4)");
+    option("Picture", "--filter", a.filter, "NAME",
+           "box (default: the mean of a pixel's samples), tent, gaussian or mitchell, which weigh its neighbours' too");
+    option("Picture", "--show", a.show, "STAGE",
+           "draw a stage of the rasterizer in false colours instead: bins, hiz, overdraw or cost");
     option("Picture", "--background", a.background, "COLOUR",
            "none (transparent), #rrggbb, #rrggbbaa, r,g,b[,a] (each 0 .. 1) or a name (default white)");
     option("Picture", "--exposure", a.exposure, "EV", "auto (default), or stops: each doubles the brightness");
@@ -157,6 +171,12 @@ RenderJob parse_render_arguments(const RenderArguments& a) {
     render.width = size.width, render.height = size.height;
     render.engine = parse_engine(a.engine);
     render.samples = static_cast<int>(parse_integer("--samples", a.samples, 1, 256));
+    render.filter = choose<PixelFilter>("--filter", a.filter,
+                                        {{"box", PixelFilter::kBox},
+                                         {"tent", PixelFilter::kTent},
+                                         {"gaussian", PixelFilter::kGaussian},
+                                         {"mitchell", PixelFilter::kMitchell}});
+    render.show = parse_stage(a, render);
     render.background = parse_background("--background", a.background);
     if (a.exposure != "auto") render.exposure_ev = static_cast<float>(parse_number("--exposure", a.exposure, -40, 40));
     render.tone_map = choose<ToneMap>(

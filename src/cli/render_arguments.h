@@ -15,9 +15,9 @@ namespace tessera::cli {
 
 struct RenderArguments {
     std::string scene, output, stats;
-    std::string size = "1024x768", engine = "raster", samples = "4", aov = "color", time = "0";
+    std::string size = "1024x768", engine = "raster", samples = "4", filter = "box", aov = "color", time = "0";
     std::string camera, eye, target, up = "y", fov;
-    std::string background = "white", exposure = "auto", tone_map = "neutral", encoding = "srgb", color_bits;
+    std::string show, background = "white", exposure = "auto", tone_map = "neutral", encoding = "srgb", color_bits;
     std::string lighting = "auto", ambient;
     std::string threads, isa = "auto", quality = "92", png_level = "1";
     std::string max_triangles, max_pixels, max_memory, timeout;

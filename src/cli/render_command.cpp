@@ -88,6 +88,7 @@ int run(const RenderArguments& arguments) {
     }
     result.warnings.insert(result.warnings.begin(), scene.warnings.begin(), scene.warnings.end());
     if (!arguments.quiet) report_warnings(file, result.warnings);
+    if (!arguments.quiet && job.render.show != Stage::kPicture) report_stage(job.render, result);
 
     if (!arguments.output.empty()) {
         const Stopwatch encoding;

@@ -45,6 +45,24 @@ void report_warnings(const std::string& file, const std::vector<std::string>& wa
                      warnings.size() - shown);
 }
 
+void report_stage(const RenderOptions& options, const RenderResult& result) {
+    const auto pixels = static_cast<std::size_t>(options.width) * static_cast<std::size_t>(options.height);
+    const auto most = [&]<class T>(const T* values) { return *std::max_element(values, values + pixels); };
+    if (options.show == Stage::kHiZ) {
+        std::fprintf(stderr, "tessera: hiz: nearest at a reversed depth of %.9g (0 is far)\n",
+                     static_cast<double>(most(result.stage.data<float>())));
+        return;
+    }
+    const std::uint32_t count = most(result.stage.data<std::uint32_t>());
+    const int side = result.stats.tile_side;
+    if (options.show == Stage::kBins)
+        std::fprintf(stderr, "tessera: bins: at most %u triangles in a tile of %dx%d\n", count, side, side);
+    else if (options.show == Stage::kOverdraw)
+        std::fprintf(stderr, "tessera: overdraw: at most %u samples tested in a pixel of %d\n", count, options.samples);
+    else
+        std::fprintf(stderr, "tessera: cost: at most %u cycles, estimated, in a tile of %dx%d\n", count, side, side);
+}
+
 ProgressBar::ProgressBar(bool enabled) : active_(enabled && isatty(STDERR_FILENO) != 0) {}
 
 ProgressBar::~ProgressBar() {

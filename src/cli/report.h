@@ -2,6 +2,8 @@
 // stderr is a terminal. Text that comes from files loses its control characters.
 #pragma once
 
+#include <tessera/render.h>
+
 #include <string>
 #include <string_view>
 #include <vector>
@@ -14,6 +16,9 @@ std::string printable(std::string_view text);
 void report_error(const std::string& text);
 // At most a screenful, then how many more there were. Each names `file`, once.
 void report_warnings(const std::string& file, const std::vector<std::string>& warnings);
+
+// The most that the shown stage has anywhere, in a line.
+void report_stage(const RenderOptions& options, const RenderResult& result);
 
 // A bar on one line of stderr; wiped when it goes. Does nothing unless `enabled` and stderr is a terminal.
 class ProgressBar {

@@ -38,7 +38,7 @@ std::string statistics_json(const std::string& scene, const RenderOptions& optio
     json.member("small_triangles", stats.small_triangles).member("large_triangles", stats.large_triangles);
     json.member("samples_tested", stats.samples_tested).member("fragments_passed", stats.fragments_passed);
     json.member("blocks_drawn", stats.blocks_drawn).member("blocks_hidden", stats.blocks_hidden);
-    json.member("pixels_covered", stats.pixels_covered);
+    json.member("pixels_covered", stats.pixels_covered).member("tile_side", stats.tile_side);
     json.key("phases_ms").begin_object();
     for (const auto& [phase, milliseconds] : stats.phases_ms) json.member(phase, milliseconds);
     json.end_object();

@@ -79,6 +79,7 @@ RasterCounters RasterEngine::draw(const Frame& frame, const ShadingContext& shad
     RasterCounters counters;
     counters.front = state_->front.counters;
     counters.triangles = state_->front.triangles;
+    counters.tile_side = grid.side;
     for (const std::unique_ptr<Tile>& tile : state_->idle) {
         add(counters.tiles, tile->counters);
         counters.pixels_covered += tile->pixels_covered;

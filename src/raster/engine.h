@@ -23,11 +23,12 @@ struct RasterTargets {
     bool labels() const { return distance || triangle; }
 };
 
-// The stages drawn: planes of one number per pixel, null where not wanted.
+// The stages of a picture with colours, drawn: planes of one number per pixel, null where not wanted.
 struct RasterInspection {
     std::uint32_t* bins = nullptr;      // triangles of the pixel's tile
     std::uint32_t* overdraw = nullptr;  // samples tested for depth
-    float* floor = nullptr;             // hierarchical Z of the pixel's block
+    float* floor = nullptr;             // hierarchical Z of the pixel's block, after the last sample
+    std::uint32_t* cost = nullptr;      // estimated cycles of the pixel's tile (tile_inspection.cpp)
 };
 
 struct RasterSettings {
@@ -46,6 +47,7 @@ struct RasterCounters {
     FrontCounters front;
     TileCounters tiles;
     std::uint64_t triangles = 0, pixels_covered = 0;
+    int tile_side = 0;
 };
 
 class Tile;

@@ -14,10 +14,15 @@ inline void find_visible(VisibleJob& job) {
     for (int at = 0; at < job.pixels; at += kWidth) {
         const Uint ids = load<Uint>(job.ordinal + at);
         if (all((ids == Uint(last)) | (ids == Uint(0u)))) continue;
-        for (int lane = 0; lane < kWidth; ++lane) {
-            last = job.ordinal[at + lane];
+        // A few different ones by name, more of them lane by lane.
+        std::uint32_t rest = mask_bits(ids != Uint(last));
+        for (int n = 0; n < 3 && rest; ++n) {
+            last = job.ordinal[at + __builtin_ctz(rest)];
             job.seen[last] = 1;
+            rest &= mask_bits(ids != Uint(last));
         }
+        if (!rest) continue;
+        for (int i = 0; i < kWidth; ++i) job.seen[job.ordinal[at + i]] = 1;
     }
     job.count = 0;
     for (std::uint32_t i = 1; i <= job.triangle_count; ++i) {
@@ -41,11 +46,9 @@ inline void develop_tile(const DevelopJob& job) {
     const Float weight(job.weight), zero(0.0f);
     const Uint background = display_pixels(job.film, {zero, zero, zero}, zero);
     if (!job.r) {
-        const std::uint32_t pixel = lane(background, 0);
-        for (int y = 0; y < job.height; ++y) {
-            std::uint8_t* const row = job.rgba + static_cast<std::size_t>(y) * job.stride;
-            for (int x = 0; x < job.width; ++x) __builtin_memcpy(row + 4 * x, &pixel, 4);
-        }
+        for_each_vector(job.side, job.width, job.height, [&](int, int x, int y) {
+            store_pixels(background, job.rgba, job.stride, x, y, job.width, job.height);
+        });
         return;
     }
     for_each_vector(job.side, job.width, job.height, [&](int at, int x, int y) {

@@ -17,17 +17,6 @@ void make_record(const InstanceView& instance, std::uint32_t triangle, const Pro
     if (setup.visible()) make_surface_record(instance, triangle, setup, projection, layout, record);
 }
 
-// A pixel of a tile, whose pixels lie as blocks.
-struct TilePixel {
-    int x, y;
-    TilePixel(std::uint32_t pixel, int side) {
-        const int blocks = side / kBlockSide, block = static_cast<int>(pixel) / kBlockPixels,
-                  at = static_cast<int>(pixel) % kBlockPixels;
-        x = block % blocks * kBlockSide + at % kBlockSide;
-        y = block / blocks * kBlockSide + at / kBlockSide;
-    }
-};
-
 }  // namespace
 
 TileTask::TileTask(const Frame& f, const ShadingContext& s, const RasterSettings& o, const RasterTargets& t,
@@ -76,6 +65,8 @@ void Tile::draw(const TileTask& task, int index) {
     height_ = std::min(side_, static_cast<int>(task.frame.projection.height) - y0_);
     triangle_count_ = task.front.bins_of(index, bins_);
     if (task.settings.inspection.overdraw) overdraw_.assign(depth_.size(), 0);
+    cost_ = 0;
+    costed_ = counters;
 
     bool centre_seen = false;
     if (task.targets.colors()) {
@@ -88,15 +79,16 @@ void Tile::draw(const TileTask& task, int index) {
             for (const SamplePosition& offset : task.settings.samples) {
                 find_visible(offset);
                 take_sample(offset, first);
+                if (task.settings.inspection.cost) estimate_cost();
                 first = false;
             }
             finish_colors();
             const SamplePosition only = task.settings.samples[0];
             centre_seen = task.settings.samples.size() == 1 && only.x == 128 && only.y == 128;
         }
+        inspect();
     }
     if (task.targets.labels()) label(centre_seen);
-    inspect();
 }
 
 std::uint32_t Tile::number(std::uint32_t ordinal) const {
@@ -398,19 +390,6 @@ void Tile::label(bool seen) {
     job.distance = task_->targets.distance ? task_->targets.distance + first : nullptr;
     job.triangle = task_->targets.triangle ? task_->targets.triangle + first : nullptr;
     task_->kernels.label(job);
-}
-
-void Tile::inspect() {
-    const RasterInspection& out = task_->settings.inspection;
-    if (!out.bins && !out.overdraw && !out.floor) return;
-    for (std::uint32_t pixel = 0; pixel < depth_.size(); ++pixel) {
-        const TilePixel p(pixel, side_);
-        if (p.x >= width_ || p.y >= height_) continue;
-        const std::size_t place = picture_place(pixel);
-        if (out.bins) out.bins[place] = triangle_count_;
-        if (out.overdraw) out.overdraw[place] = overdraw_[pixel];
-        if (out.floor) out.floor[place] = triangle_count_ ? floor_[pixel / kBlockPixels] : 0.0f;
-    }
 }
 
 // A tile that nothing reaches.

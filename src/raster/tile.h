@@ -28,6 +28,17 @@ struct TileTask {
     std::vector<SurfaceLayout> layouts;
 };
 
+// Where a pixel of a tile is, whose pixels lie as blocks.
+struct TilePixel {
+    int x, y;
+    TilePixel(std::uint32_t pixel, int side) {
+        const int blocks = side / kBlockSide, block = static_cast<int>(pixel) / kBlockPixels,
+                  at = static_cast<int>(pixel) % kBlockPixels;
+        x = block % blocks * kBlockSide + at % kBlockSide;
+        y = block / blocks * kBlockSide + at / kBlockSide;
+    }
+};
+
 class Tile {
   public:
     Tile();
@@ -55,6 +66,7 @@ class Tile {
     void shade_list(SamplePosition offset);
     void compose_fragments(SamplePosition offset);
     void label(bool seen);
+    void estimate_cost();
     void inspect();
     void finish_colors();
     void fill_background();
@@ -67,6 +79,8 @@ class Tile {
     const TileTask* task_ = nullptr;
     int side_ = 0, x0_ = 0, y0_ = 0, width_ = 0, height_ = 0;  // width and height: within the picture
     std::uint32_t triangle_count_ = 0;
+    std::uint64_t cost_ = 0;  // of this tile so far
+    TileCounters costed_;     // counters at the last estimate
     bool developed_ = false;  // the colours are in the picture already
     std::vector<TileBin> bins_;
     std::vector<float> depth_, floor_;

@@ -62,9 +62,61 @@ struct LargeFill {
     std::uint32_t ordinal;
     TileEdge edges[3];
     std::int32_t x0, y0;  // the tile's first sample, 1/256 pixel
+    // The plane's part of every row of vectors from the first row of blocks on that the triangle reaches.
+    int top = 0;
+    Float row_parts[kMaxTileSide / kRows];
+
+    TESSERA_INLINE LargeFill(const LargeTriangle& triangle, std::uint32_t number, std::int32_t x, std::int32_t y)
+        : t(triangle), ordinal(number), x0(x), y0(y) {}
+
+    TESSERA_INLINE void set_rows(int first_block, int last_block) {
+        top = first_block;
+        const DepthPlane<float>& p = t.depth;
+        Int y = ((lane_row() + Int(first_block * kBlockSide)) << 8) + Int(y0 - p.anchor_y);
+        for (int i = 0; i < (last_block - first_block + 1) * kBlockSide / kRows; ++i) {
+            row_parts[i] = Float(p.depth) + Float(p.ddy) * to_float(y);
+            y += Int(kRows * 256);
+        }
+    }
 };
 
 enum class FillKind { kOpaque, kCutOut, kBlend };
+
+// The nearest or the farthest depth over a block, exactly: see nearest_over().
+TESSERA_INLINE float depth_at_corner(const LargeFill& f, std::int32_t px, std::int32_t py, bool nearest) {
+    const DepthPlane<float>& p = f.t.depth;
+    constexpr std::int32_t kReach = (kBlockSide - 1) * 256;
+    const float dx = static_cast<float>(256 * px + f.x0 - p.anchor_x + ((p.ddx > 0.0f) == nearest ? kReach : 0));
+    const float dy = static_cast<float>(256 * py + f.y0 - p.anchor_y + ((p.ddy > 0.0f) == nearest ? kReach : 0));
+    return (p.depth + p.ddy * dy) + p.ddx * dx;
+}
+
+// The least depth of a block, for its floor.
+TESSERA_INLINE float least_depth(const float* depth) {
+    Float low = load<Float>(depth);
+    for (int i = kLanes<Float>; i < kBlockPixels; i += kLanes<Float>) low = min(low, load<Float>(depth + i));
+    return least_lane(low);
+}
+
+// A block that lies inside all edges, of an opaque triangle: nothing but the depth test. `clamps` where
+// the plane leaves the triangle's range.
+template <bool kClamps>
+TESSERA_INLINE bool fill_inside(const LargeFill& f, const Float (&x_part)[kPerRow], const Float* row_part,
+                                float* depth, std::uint32_t* ordinal) {
+    const Float lowest(f.t.depth.lowest), highest(f.t.depth.highest);
+    const Uint id(f.ordinal);
+    Mask all_pass(true);
+    for (int at = 0; at < kBlockPixels; ++row_part)
+        for (int j = 0; j < kPerRow; ++j, at += kLanes<Float>) {
+            Float z = *row_part + x_part[j];
+            if (kClamps) z = min(max(z, lowest), highest);
+            const Mask pass = z > load<Float>(depth + at);
+            store_masked(depth + at, pass, z);
+            store_masked(ordinal + at, pass, id);
+            all_pass &= pass;
+        }
+    return all(all_pass);
+}
 
 // One block: `inside` says that no edge needs a look.
 template <FillKind kKind, bool kCount>
@@ -76,30 +128,37 @@ TESSERA_INLINE void fill_block(VisibilityJob& job, const LargeFill& f, int block
     std::uint32_t* const ordinal = job.ordinal + block * kBlockPixels;
     const DepthPlane<float>& plane = f.t.depth;
     const Int columns = lane_column(), rows = lane_row();
-    const Float lowest(plane.lowest), highest(plane.highest), ddy(plane.ddy), at_anchor(plane.depth);
+    const Float lowest(plane.lowest), highest(plane.highest);
+    const Float* row_part = f.row_parts + (block_y - f.top) * (kBlockSide / kRows);
     Float x_part[kPerRow];
+    for (int j = 0; j < kPerRow; ++j)
+        x_part[j] = Float(plane.ddx) *
+                    to_float(((columns + Int(px + j * kLanes<Float>)) << 8) + Int(f.x0 - plane.anchor_x));
+    if constexpr (kKind == FillKind::kOpaque && !kCount)
+        if (inside) {
+            const float farthest = depth_at_corner(f, px, py, false);
+            const bool clamps = farthest < plane.lowest || depth_at_corner(f, px, py, true) > plane.highest;
+            const bool filled = clamps ? fill_inside<true>(f, x_part, row_part, depth, ordinal)
+                                       : fill_inside<false>(f, x_part, row_part, depth, ordinal);
+            if (job.hierarchical_z)
+                job.floor[block] = filled ? min(max(farthest, plane.lowest), plane.highest) : least_depth(depth);
+            return;
+        }
     Int e[3][kPerRow], step[3];
-    for (int j = 0; j < kPerRow; ++j) {
-        const Int column = columns + Int(px + j * kLanes<Float>);
-        x_part[j] = Float(plane.ddx) * to_float((column << 8) + Int(f.x0 - plane.anchor_x));
-        if (inside) continue;
-        for (int k = 0; k < 3; ++k)
-            e[k][j] = Int(f.edges[k].e) + Int(f.edges[k].a) * column + Int(f.edges[k].b) * (rows + Int(py));
+    for (int k = 0; k < 3; ++k) {
+        step[k] = Int(f.edges[k].b * kRows);
+        for (int j = 0; j < kPerRow; ++j)
+            e[k][j] = Int(f.edges[k].e) + Int(f.edges[k].a) * (columns + Int(px + j * kLanes<Float>)) +
+                      Int(f.edges[k].b) * (rows + Int(py));
     }
-    for (int k = 0; k < 3; ++k) step[k] = Int(f.edges[k].b * kRows);
     Float low(3.4e38f);
-    Int y = ((rows + Int(py)) << 8) + Int(f.y0 - plane.anchor_y);
-    for (int row = 0; row < kBlockSide; row += kRows) {
-        const Float row_part = at_anchor + ddy * to_float(y);
+    for (int row = 0; row < kBlockSide; row += kRows, ++row_part) {
         for (int j = 0; j < kPerRow; ++j) {
             const int at = row * kBlockSide + j * kLanes<Float>;
             const Float before = load<Float>(depth + at);
-            const Float z = min(max(row_part + x_part[j], lowest), highest);
-            Mask covered(true);
-            if (!inside) {
-                covered = or3(e[0][j], e[1][j], e[2][j]) > Int(-1);
-                for (int k = 0; k < 3; ++k) e[k][j] += step[k];
-            }
+            const Float z = min(max(*row_part + x_part[j], lowest), highest);
+            const Mask covered = or3(e[0][j], e[1][j], e[2][j]) > Int(-1);
+            for (int k = 0; k < 3; ++k) e[k][j] += step[k];
             if constexpr (kCount) {
                 const Mask counted = covered & (before < Float(3.4e38f));
                 job.counters.samples_covered += static_cast<std::uint64_t>(__builtin_popcount(mask_bits(counted)));
@@ -135,14 +194,13 @@ TESSERA_INLINE void fill_block(VisibilityJob& job, const LargeFill& f, int block
                     job.counters.fragments_passed += static_cast<std::uint64_t>(__builtin_popcount(mask_bits(pass)));
             }
         }
-        y += Int(kRows * 256);
     }
     if (kKind != FillKind::kBlend && job.hierarchical_z) job.floor[block] = least_lane(low);
 }
 
 // Classifies as many blocks at a time as there are lanes, then fills those that are left.
 template <FillKind kKind, bool kCount>
-TESSERA_INLINE void fill_blocks(VisibilityJob& job, const LargeFill& f, const float* record,
+TESSERA_INLINE void fill_blocks(VisibilityJob& job, LargeFill& f, const float* record,
                                 const SurfaceLayout* layout) {
     constexpr int kWidth = kLanes<Float>;
     const int blocks = job.side / kBlockSide, shift = __builtin_ctz(static_cast<unsigned>(blocks));
@@ -155,6 +213,8 @@ TESSERA_INLINE void fill_blocks(VisibilityJob& job, const LargeFill& f, const fl
     const int left = block_of(least_of(v[0].x, v[1].x, v[2].x) - x), top = block_of(least_of(v[0].y, v[1].y, v[2].y) - y);
     const int right = block_of(most_of(v[0].x, v[1].x, v[2].x) - x),
               bottom = block_of(most_of(v[0].y, v[1].y, v[2].y) - y);
+    if (top > bottom) return;
+    f.set_rows(top, bottom);
     constexpr std::int32_t kReach = kBlockSide - 1;
     Int most[3], least[3];
     for (int k = 0; k < 3; ++k) {
@@ -198,7 +258,7 @@ TESSERA_INLINE void fill_blocks(VisibilityJob& job, const LargeFill& f, const fl
 
 // Cut-outs and transparent triangles: the rare kinds pay for themselves.
 template <FillKind kKind>
-__attribute__((noinline)) void fill_special(VisibilityJob& job, const LargeFill& f) {
+__attribute__((noinline)) void fill_special(VisibilityJob& job, LargeFill& f) {
     alignas(64) float record[kMaxSurfaceFloats * kMaxLanes];
     SurfaceLayout layout;
     if (kKind == FillKind::kCutOut) {
@@ -211,7 +271,7 @@ __attribute__((noinline)) void fill_special(VisibilityJob& job, const LargeFill&
 
 template <bool kCount>
 TESSERA_INLINE void fill_large(VisibilityJob& job, const LargeTriangle& t, std::uint32_t ordinal) {
-    LargeFill f{t, ordinal, {}, 256 * job.x0 + job.offset.x, 256 * job.y0 + job.offset.y};
+    LargeFill f(t, ordinal, 256 * job.x0 + job.offset.x, 256 * job.y0 + job.offset.y);
     for (int k = 0; k < 3; ++k)
         if (!f.edges[k].set(t.v[k], t.v[k == 2 ? 0 : k + 1], f.x0, f.y0, job.side)) return;
     const MaterialView& material = job.source->shading->materials[job.source->instances[t.instance].material];

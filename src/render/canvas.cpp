@@ -6,6 +6,9 @@
 namespace tessera {
 namespace {
 
+// The one NaN that may be: a file with broken numbers gives the same bits everywhere.
+float without_nan(float value) { return value == value ? value : 0.0f; }
+
 // The plane's pixels, with the memory that it has when size and format are right; null when not wanted.
 template <class T>
 T* make_plane(bool wanted, const RenderOptions& options, PixelFormat format, Image& plane) {
@@ -23,29 +26,58 @@ Canvas::Canvas(const RenderOptions& options) : options_(options) {
     const auto pixels = static_cast<std::size_t>(options.width) * static_cast<std::size_t>(options.height);
     sums_.assign(4 * pixels, 0.0f);
     hit_.assign(pixels, 0);
+    if (options.filter != PixelFilter::kBox) filter_.emplace(options, nullptr);
 }
 
-void Canvas::develop(const FilmView& film, const RasterTargets& targets, RenderStats& stats) const {
-    const float weight = 1.0f / static_cast<float>(options_.samples);
-    for (std::size_t pixel = 0; pixel < hit_.size(); ++pixel) {
-        stats.pixels_covered += hit_[pixel] != 0;
-        const float* sum = sums_.data() + 4 * pixel;
-        const Vec3T<float> mean{sum[0] * weight, sum[1] * weight, sum[2] * weight};
-        const float alpha = sum[3] * weight;
-        if (targets.rgba) {
-            const DisplayPixel<float> d = tessera::develop(film, mean, alpha);
-            targets.rgba[4 * pixel + 0] = static_cast<std::uint8_t>(d.r);
-            targets.rgba[4 * pixel + 1] = static_cast<std::uint8_t>(d.g);
-            targets.rgba[4 * pixel + 2] = static_cast<std::uint8_t>(d.b);
-            targets.rgba[4 * pixel + 3] = static_cast<std::uint8_t>(d.a);
-        }
-        if (targets.linear) {
-            const float values[4] = {mean.x, mean.y, mean.z, alpha};
-            // The one NaN that may be: a file with broken numbers gives the same bits everywhere.
-            for (std::size_t i = 0; i < 4; ++i)
-                targets.linear[4 * pixel + i] = values[i] == values[i] ? values[i] : 0.0f;
-        }
+void Canvas::take_sample(int sample, ReferenceEngine& engine, const Visibility& seen, SamplePosition offset,
+                         const std::function<void(double)>& checkpoint) {
+    const Fragment* transparent = seen.transparent.data();
+    const Fragment* const end = transparent + seen.transparent.size();
+    for (std::size_t pixel = 0; pixel < seen.depth.size(); ++pixel) {
+        if (pixel % static_cast<std::size_t>(seen.width) == 0)
+            checkpoint(static_cast<double>(pixel) / static_cast<double>(seen.depth.size()));
+        const Fragment* const first = transparent;
+        while (transparent != end && transparent->pixel == pixel) ++transparent;
+        if (seen.triangle[pixel] == 0 && first == transparent) continue;
+        hit_[pixel] = 1;
+        add(pixel, engine.shade_sample(seen, pixel, offset, first, transparent));
     }
+    if (!filter_) return;
+    for (float& value : sums_) value = without_nan(value);
+    filter_->add(sample, sums_.data(), checkpoint);
+    std::fill(sums_.begin(), sums_.end(), 0.0f);
+}
+
+void Canvas::develop(const FilmView& film, const RasterTargets& targets, RenderStats& stats) {
+    if (filter_) {
+        develop_picture(filter_->finish(), 1.0f, film, options_, nullptr, targets);
+        stats.pixels_covered = filter_->pixels_covered();
+        return;
+    }
+    for (const char hit : hit_) stats.pixels_covered += hit != 0;
+    develop_picture(sums_.data(), 1.0f / static_cast<float>(options_.samples), film, options_, nullptr, targets);
+}
+
+void develop_picture(const float* sums, float weight, const FilmView& film, const RenderOptions& options, Arena* arena,
+                     const RasterTargets& targets) {
+    for_each_row(options.height, arena, [&](int y) {
+        const auto width = static_cast<std::size_t>(options.width), row = static_cast<std::size_t>(y) * width;
+        for (std::size_t pixel = row; pixel < row + width; ++pixel) {
+            const float* sum = sums + 4 * pixel;
+            const Vec3T<float> mean{sum[0] * weight, sum[1] * weight, sum[2] * weight};
+            const float alpha = sum[3] * weight;
+            if (targets.rgba) {
+                const DisplayPixel<float> d = develop(film, mean, alpha);
+                targets.rgba[4 * pixel + 0] = static_cast<std::uint8_t>(d.r);
+                targets.rgba[4 * pixel + 1] = static_cast<std::uint8_t>(d.g);
+                targets.rgba[4 * pixel + 2] = static_cast<std::uint8_t>(d.b);
+                targets.rgba[4 * pixel + 3] = static_cast<std::uint8_t>(d.a);
+            }
+            if (!targets.linear) continue;
+            const float values[4] = {mean.x, mean.y, mean.z, alpha};
+            for (std::size_t i = 0; i < 4; ++i) targets.linear[4 * pixel + i] = without_nan(values[i]);
+        }
+    });
 }
 
 LabelCounts take_labels(ReferenceEngine& engine, const RunControl& control, const RasterTargets& targets) {
@@ -88,7 +120,12 @@ void add_counters(RenderStats& stats, const LabelCounts& counts) {
     stats.pixels_covered = counts.pixels;
 }
 
-void add_counters(RenderStats& stats, const RasterCounters& counters) {
+void add_counters(RenderStats& stats, const RasterCounters& counters, bool first) {
+    stats.samples_tested += counters.tiles.samples_covered;
+    stats.fragments_passed += counters.tiles.fragments_passed;
+    stats.blocks_drawn += counters.tiles.blocks_drawn;
+    stats.blocks_hidden += counters.tiles.blocks_hidden;
+    if (!first) return;
     stats.triangles = counters.triangles;
     stats.culled_frustum = counters.front.frustum;
     stats.culled_backface = counters.front.backface;
@@ -97,11 +134,8 @@ void add_counters(RenderStats& stats, const RasterCounters& counters) {
     stats.culled_no_sample = counters.front.no_sample;
     stats.small_triangles = counters.front.small;
     stats.large_triangles = counters.front.large;
-    stats.samples_tested = counters.tiles.samples_covered;
-    stats.fragments_passed = counters.tiles.fragments_passed;
-    stats.blocks_drawn = counters.tiles.blocks_drawn;
-    stats.blocks_hidden = counters.tiles.blocks_hidden;
     stats.pixels_covered = counters.pixels_covered;
+    stats.tile_side = counters.tile_side;
 }
 
 RasterTargets make_planes(const RenderOptions& options, RenderResult& result) {

@@ -2,6 +2,7 @@
 
 #include <tessera/error.h>
 
+#include "core/sampling.h"
 #include "image/color.h"
 
 #include <algorithm>
@@ -13,8 +14,23 @@ namespace {
 
 [[noreturn]] void refuse(const std::string& message) { throw Error(ErrorCode::kUsage, message); }
 
-// Depth, triangle and colour of every pixel while it is made, and the finished colour.
-constexpr std::uint64_t kBytesPerPixel = 4 + 4 + 16 + 4;
+// 512 transparent layers all over a tile; some hundred MiB of working memory per thread.
+constexpr std::size_t kMostFragmentsPerTile = 512 * 64 * 64;
+
+// Depth, triangle and colour of every pixel while it is made, and the finished colour; a wide filter's
+// sums and its flag; a stage's numbers.
+std::uint64_t picture_bytes(const RenderOptions& o) {
+    const auto pixels = static_cast<std::uint64_t>(o.width) * static_cast<std::uint64_t>(o.height);
+    return pixels * (4 + 4 + 16 + 4 + (o.filter == PixelFilter::kBox ? 0 : 16 + 1) + (o.show == Stage::kPicture ? 0 : 4));
+}
+
+void check_stage(const RenderOptions& o) {
+    if (o.show > Stage::kCost) refuse("unknown stage");
+    if (o.show == Stage::kPicture) return;
+    if (o.engine != Engine::kRaster) refuse(std::string(name(o.engine)) + " has no tiles: no stage to show");
+    if (o.filter != PixelFilter::kBox) refuse("stages are shown with the box filter only");
+    if (!o.want_color) refuse("stages are shown in the colour plane, which is not wanted");
+}
 
 }  // namespace
 
@@ -45,9 +61,11 @@ void check_options(const RenderOptions& o) {
     if (o.background)
         for (const float c : {o.background->x, o.background->y, o.background->z, o.background->w})
             if (!(c >= 0.0f && c <= 1.0f)) refuse("background components must be 0 to 1");
+    if (o.filter > PixelFilter::kMitchell) refuse("unknown filter");
+    check_stage(o);
     resolve_isa(o.isa);
     const auto pixels = static_cast<std::uint64_t>(o.width) * static_cast<std::uint64_t>(o.height);
-    if (pixels * kBytesPerPixel > o.max_bytes)
+    if (picture_bytes(o) > o.max_bytes)
         throw Error(ErrorCode::kLimit, "a picture of " + std::to_string(pixels) +
                                            " pixels needs more memory than the limit of " +
                                            std::to_string(o.max_bytes) + " bytes");
@@ -70,10 +88,31 @@ FilmView film_view(const RenderOptions& options, double exposure) {
     return film;
 }
 
+std::vector<SamplePosition> sample_positions(const RenderOptions& options) {
+    std::vector<SamplePosition> positions;
+    for (int sample = 0; sample < options.samples; ++sample) {
+        const SampleOffset s = sample_offset(sample, options.samples);
+        positions.push_back({s.x, s.y});
+    }
+    return positions;
+}
+
+RasterSettings raster_settings(const RenderOptions& options, const FilmView& film, const RunControl& control) {
+    RasterSettings settings;
+    settings.samples = sample_positions(options);
+    settings.film = film;
+    settings.isa = resolve_isa(options.isa);
+    settings.tile_side = options.raster.tile_side;
+    settings.hierarchical_z = options.raster.hierarchical_z;
+    settings.count = options.raster.count_samples;
+    settings.max_fragments = std::min(control.max_fragments, kMostFragmentsPerTile);
+    settings.checkpoint = control.checkpoint;
+    return settings;
+}
+
 RunControl Watchdog::control(int step, int steps) const {
     RunControl control;
-    const auto pixels = static_cast<std::uint64_t>(options_.width) * static_cast<std::uint64_t>(options_.height);
-    control.max_fragments = static_cast<std::size_t>((options_.max_bytes - pixels * kBytesPerPixel) / sizeof(Fragment));
+    control.max_fragments = static_cast<std::size_t>((options_.max_bytes - picture_bytes(options_)) / sizeof(Fragment));
     control.checkpoint = [this, step, steps](double part) {
         if (!options_.cancel && !options_.progress) return;
         const std::lock_guard lock(mutex_);

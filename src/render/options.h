@@ -3,10 +3,12 @@
 
 #include <tessera/render.h>
 
+#include "raster/engine.h"
 #include "reference/visibility.h"
 #include "shading/film.h"
 
 #include <mutex>
+#include <vector>
 
 namespace tessera {
 
@@ -14,6 +16,12 @@ namespace tessera {
 void check_options(const RenderOptions& options);
 
 FilmView film_view(const RenderOptions& options, double exposure);
+
+// Where a pixel's samples lie.
+std::vector<SamplePosition> sample_positions(const RenderOptions& options);
+
+// The tile rasterizer's settings for all samples, under `control`.
+RasterSettings raster_settings(const RenderOptions& options, const FilmView& film, const RunControl& control);
 
 // Turns the stages' checkpoints, which come from any thread, into calls of the caller's progress and
 // cancel callbacks: one at a time, with rising progress.

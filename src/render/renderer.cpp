@@ -4,44 +4,25 @@
 #include <tessera/renderer.h>
 
 #include "core/fp_environment.h"
-#include "core/sampling.h"
 #include "raster/engine.h"
 #include "reference/engine.h"
 #include "render/canvas.h"
 #include "render/options.h"
 #include "render/shading_scene.h"
+#include "render/stage_picture.h"
 #include "render/stopwatch.h"
 
-#include <algorithm>
-
 namespace tessera {
-namespace {
-
-// Shades what was seen at one sample position of every pixel and adds it to the picture.
-void shade_pass(ReferenceEngine& engine, const Visibility& seen, SamplePosition offset, Canvas& canvas,
-                const std::function<void(double)>& checkpoint) {
-    const Fragment* transparent = seen.transparent.data();
-    const Fragment* const end = transparent + seen.transparent.size();
-    for (std::size_t pixel = 0; pixel < seen.depth.size(); ++pixel) {
-        if (pixel % static_cast<std::size_t>(seen.width) == 0)
-            checkpoint(static_cast<double>(pixel) / static_cast<double>(seen.depth.size()));
-        const Fragment* const first = transparent;
-        while (transparent != end && transparent->pixel == pixel) ++transparent;
-        if (seen.triangle[pixel] == 0 && first == transparent) continue;
-        const SampleColor c = engine.shade_sample(seen, pixel, offset, first, transparent);
-        canvas.add(pixel, c.premultiplied, c.alpha);
-    }
-}
-
-// 512 transparent layers all over a tile; some hundred MiB of working memory per thread.
-constexpr std::size_t kMostFragmentsPerTile = 512 * 64 * 64;
-
-}  // namespace
 
 // Everything that outlives a frame.
 struct Renderer::Impl {
     Impl(const Scene& s, const RenderOptions& o)
-        : scene(s), options(o), arena(o.threads), prepared(s), shading(s, prepared.used_materials(), arena, warnings) {}
+        : scene(s), options(o), arena(o.threads), prepared(s), shading(s, prepared.used_materials(), arena, warnings) {
+        const bool wide = o.filter != PixelFilter::kBox && (o.want_color || o.want_linear);
+        if (o.engine != Engine::kRaster || !wide) return;
+        filter.emplace(o, &arena);
+        sample_plane.resize(filter->plane_floats());
+    }
 
     void draw(const View& view, RenderResult& result);
     void draw_tiles(const Watchdog& watchdog, Stopwatch& watch, RenderResult& result);
@@ -55,6 +36,9 @@ struct Renderer::Impl {
     ShadingScene shading;
     Frame frame;  // the latest
     RasterEngine raster;
+    // Of filters wider than the pixel: the sums, and the picture of one sample, linear RGBA.
+    std::optional<FilterPass> filter;
+    std::vector<float> sample_plane;
 };
 
 Renderer::Renderer(const Scene& scene, const RenderOptions& options) {
@@ -86,26 +70,40 @@ void Renderer::Impl::draw(const View& view, RenderResult& result) {
     watch.finish();
 }
 
-// The tile rasterizer: visibility, shading and film inside each tile.
+// The tile rasterizer: visibility, shading and film inside each tile. With a filter that is wider than
+// the pixel, linear pictures of one sample each, and the film after the last of them.
 void Renderer::Impl::draw_tiles(const Watchdog& watchdog, Stopwatch& watch, RenderResult& result) {
-    RasterSettings settings;
-    for (int sample = 0; sample < options.samples; ++sample) {
-        const SampleOffset s = sample_offset(sample, options.samples);
-        settings.samples.push_back({s.x, s.y});
-    }
-    const RunControl control = watchdog.control(0, 1);
-    settings.film = shading.film(options);
-    settings.isa = resolve_isa(options.isa);
-    settings.max_fragments = std::min(control.max_fragments, kMostFragmentsPerTile);
-    settings.checkpoint = control.checkpoint;
-    settings.tile_side = options.raster.tile_side;
-    settings.hierarchical_z = options.raster.hierarchical_z;
-    settings.count = options.raster.count_samples;
     const RasterTargets targets = make_planes(options, result);
-    add_counters(result.stats, raster.draw(frame, shading.context(), settings, targets, arena));
-    watch.phase("tiles");
+    RasterSettings settings = raster_settings(options, shading.film(options), watchdog.control(0, 1));
     result.stats.isa = settings.isa;
     result.stats.threads = arena.threads();
+    const auto draw = [&](const RasterTargets& to, bool first) {
+        add_counters(result.stats, raster.draw(frame, shading.context(), settings, to, arena), first);
+        watch.phase("tiles");
+    };
+    settings.inspection = make_stage_plane(options, result);
+    if (!filter) {
+        draw(targets, true);
+        if (options.show != Stage::kPicture) paint_stage(options.show, result.stats.tile_side, result);
+        return;
+    }
+
+    filter->restart();
+    const std::vector<SamplePosition> positions = std::move(settings.samples);
+    RasterTargets sample_targets = targets;
+    sample_targets.rgba = nullptr;
+    sample_targets.linear = sample_plane.data();
+    for (int sample = 0; sample < options.samples; ++sample) {
+        settings.samples.assign(1, positions[static_cast<std::size_t>(sample)]);
+        settings.checkpoint = watchdog.control(sample, options.samples).checkpoint;
+        draw(sample_targets, sample == 0);
+        sample_targets.distance = nullptr, sample_targets.triangle = nullptr;  // done with the first one
+        filter->add(sample, sample_plane.data(), watchdog.control(0, 0).checkpoint);
+        watch.phase("filter");
+    }
+    develop_picture(filter->finish(), 1.0f, settings.film, options, &arena, targets);
+    result.stats.pixels_covered = filter->pixels_covered();
+    watch.phase("film");
 }
 
 // The reference engines: pass by pass, everything in full.
@@ -119,13 +117,14 @@ void Renderer::Impl::draw_reference(const Watchdog& watchdog, Stopwatch& watch, 
 
     if (targets.colors()) {
         Canvas canvas(options);
+        const std::vector<SamplePosition> positions = sample_positions(options);
         for (int sample = 0; sample < options.samples; ++sample) {
-            const SampleOffset s = sample_offset(sample, options.samples);
-            const SamplePosition offset{s.x, s.y};
+            const SamplePosition offset = positions[static_cast<std::size_t>(sample)];
             const Visibility seen = engine.see(offset, watchdog.control(2 * sample, 2 * options.samples));
             add_counters(result.stats, seen.counters, sample == 0);
             watch.phase("visibility");
-            shade_pass(engine, seen, offset, canvas, watchdog.control(2 * sample + 1, 2 * options.samples).checkpoint);
+            canvas.take_sample(sample, engine, seen, offset,
+                               watchdog.control(2 * sample + 1, 2 * options.samples).checkpoint);
             watch.phase("shading");
         }
         canvas.develop(shading.film(options), targets, result.stats);

@@ -3,8 +3,13 @@
 #include "cli/run_command.h"
 
 #include <tessera/image.h>
+#include <tessera/load.h>
+#include <tessera/render.h>
 
 #include <simdjson.h>
+
+#include <algorithm>
+#include <tuple>
 
 namespace {
 
@@ -135,6 +140,53 @@ TEST_F(CliRender, TransparentBackgroundHasAlpha) {
     EXPECT_EQ(image.data<unsigned char>()[3], 0) << "the top left corner shows the sky";
 }
 
+TEST_F(CliRender, RAS7_FiltersGiveTheLibrarysPictures) {
+    using tessera::PixelFilter;
+    const std::pair<const char*, PixelFilter> filters[] = {{"box", PixelFilter::kBox},
+                                                           {"tent", PixelFilter::kTent},
+                                                           {"gaussian", PixelFilter::kGaussian},
+                                                           {"mitchell", PixelFilter::kMitchell}};
+    const tessera::Scene spheres = tessera::load_scene(scene("spheres.gltf"));
+    std::vector<std::uint64_t> hashes;
+    for (const auto& [name, filter] : filters) {
+        const Outcome run = run_command({"render", scene("spheres.gltf"), "-o", in_folder("a.png"), "-s", "40x30",
+                                         "--samples", "2", "--filter", name});
+        ASSERT_EQ(run.code, 0) << run.err;
+        tessera::RenderOptions options;
+        options.width = 40, options.height = 30, options.samples = 2, options.filter = filter;
+        hashes.push_back(tessera::hash_pixels(tessera::read_image(in_folder("a.png"))));
+        EXPECT_EQ(hashes.back(), tessera::render(spheres, options).stats.color_hash) << name;
+    }
+    std::sort(hashes.begin(), hashes.end());
+    EXPECT_EQ(std::adjacent_find(hashes.begin(), hashes.end()), hashes.end()) << "two filters, one picture";
+}
+
+TEST_F(CliRender, ShowsTheStagesAndSaysTheirMost) {
+    using tessera::Stage;
+    const tessera::Scene box = tessera::load_scene(scene("cornell-box.gltf"));
+    const std::tuple<const char*, Stage, std::string> stages[] = {
+        {"bins", Stage::kBins, " triangles in a tile of 64x64\n"},
+        {"hiz", Stage::kHiZ, " (0 is far)\n"},
+        {"overdraw", Stage::kOverdraw, " samples tested in a pixel of 1\n"},
+        {"cost", Stage::kCost, " cycles, estimated, in a tile of 64x64\n"}};
+    for (const auto& [name, stage, line] : stages) {
+        const Outcome run = render({"-o", in_folder("a.png"), "--show", name});
+        ASSERT_EQ(run.code, 0) << run.err;
+        tessera::RenderOptions options;
+        options.width = 64, options.height = 48, options.samples = 1, options.show = stage;
+        const tessera::RenderResult result = tessera::render(box, options);
+        EXPECT_EQ(tessera::hash_pixels(tessera::read_image(in_folder("a.png"))), result.stats.color_hash) << name;
+        EXPECT_EQ(run.err.rfind("tessera: " + std::string(name) + ": ", 0), 0u) << run.err;
+        EXPECT_NE(run.err.find(line), std::string::npos) << run.err;
+        if (stage != Stage::kHiZ) {
+            const std::uint32_t* n = result.stage.data<std::uint32_t>();
+            const std::string most = "at most " + std::to_string(*std::max_element(n, n + 64 * 48)) + " ";
+            EXPECT_NE(run.err.find(most), std::string::npos) << run.err;
+        }
+        EXPECT_EQ(render({"-o", in_folder("a.png"), "--show", name, "--quiet"}).err, "");
+    }
+}
+
 TEST_F(CliRender, FB1_ColorBitsLimitTheLevels) {
     ASSERT_EQ(render({"-o", in_folder("a.png"), "--color-bits", "3-3-2"}).code, 0);
     const tessera::Image image = tessera::read_image(in_folder("a.png"));
@@ -162,6 +214,10 @@ TEST_F(CliRender, UsageErrorsExitWith2AndNameTheOption) {
         {{"-o", out, "--size", "64"}, "--size"},
         {{"-o", out, "--samples", "0"}, "--samples"},
         {{"-o", out, "--samples", "4x"}, "--samples"},
+        {{"-o", out, "--filter", "lanczos"}, "--filter"},
+        {{"-o", out, "--show", "triangles"}, "--show"},
+        {{"-o", out, "--show", "bins", "--engine", "reference-raster"}, "--show: needs --engine raster"},
+        {{"-o", out, "--show", "cost", "--filter", "tent"}, "--show: needs --filter box"},
         {{"-o", out, "--eye", "1,2"}, "--eye"},
         {{"-o", out, "--target", "1,2,3"}, "--target"},
         {{"-o", out, "--camera", "0", "--eye", "1,2,3"}, "--camera"},

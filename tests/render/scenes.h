@@ -8,6 +8,12 @@
 
 namespace tessera::test {
 
+// One of the scenes/.
+inline Scene scene_file(const char* name) {
+    std::string path = TESSERA_SOURCE_DIR "/scenes/";
+    return load_scene(path += name);
+}
+
 // An upright rectangle centred at (0, 0, z) that faces +Z.
 inline Primitive rectangle(float half_width, float half_height, float z, int material) {
     Primitive p;
