@@ -23,7 +23,9 @@ TEST(Tuning, BEY1_TileSidesHierarchicalZAndCountingChangeNoByte) {
                     const RenderResult r = render(scene, o);
                     const std::string what = std::string(name) + " " + std::to_string(side);
                     EXPECT_EQ(r.stats.tile_side, side);
-                    if (!hierarchical_z) EXPECT_EQ(r.stats.blocks_hidden, 0u) << what;
+                    if (!hierarchical_z) {
+                        EXPECT_EQ(r.stats.blocks_hidden, 0u) << what;
+                    }
                     EXPECT_TRUE(same_bytes(reference.color, r.color)) << what;
                     EXPECT_TRUE(same_bytes(reference.linear, r.linear)) << what;
                     EXPECT_TRUE(same_bytes(reference.depth, r.depth)) << what;
