@@ -97,18 +97,6 @@ TEST_P(SetupKernel, SameTrianglesRunsAndCounters) {
 
 INSTANTIATE_TEST_SUITE_P(Kernels, SetupKernel, vector_isas(), isa_name);
 
-// Whether a sample lies in a triangle of clockwise vertices: 64 bits, the rule spelled out.
-bool covers(const SnappedVertex (&v)[3], std::int32_t x, std::int32_t y) {
-    for (int k = 0; k < 3; ++k) {
-        const SnappedVertex &a = v[k], &b = v[(k + 1) % 3];
-        const std::int64_t dx = static_cast<std::int64_t>(b.x) - a.x, dy = static_cast<std::int64_t>(b.y) - a.y;
-        const std::int64_t e = dx * (static_cast<std::int64_t>(y) - a.y) - dy * (static_cast<std::int64_t>(x) - a.x);
-        const bool top_left = dy < 0 || (dy == 0 && dx > 0);
-        if (e < 0 || (e == 0 && !top_left)) return false;
-    }
-    return true;
-}
-
 // A small triangle's mask against every sample of its 8x8, its depth plane against setup_triangle().
 TEST(SetupByDefinition, MasksAndPlanes) {
     const FpEnvironment exact;

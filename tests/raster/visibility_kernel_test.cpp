@@ -175,13 +175,6 @@ TEST_P(VisibilityKernel, MasksOverTheBordersOfTheTile) {
 
 INSTANTIATE_TEST_SUITE_P(Kernels, VisibilityKernel, vector_isas(), isa_name);
 
-// One edge at a sample, exactly.
-bool inside(const SnappedVertex& a, const SnappedVertex& b, std::int64_t x, std::int64_t y) {
-    const std::int64_t dx = static_cast<std::int64_t>(b.x) - a.x, dy = static_cast<std::int64_t>(b.y) - a.y;
-    const std::int64_t e = dx * (y - a.y) - dy * (x - a.x);
-    return e > 0 || (e == 0 && (dy < 0 || (dy == 0 && dx > 0)));
-}
-
 // Opaque triangles only: every covered sample against the depth there, triangle after triangle; the floors
 // below every depth of their block.
 TEST(VisibilityByDefinition, DepthTestAtEverySample) {
@@ -216,9 +209,7 @@ TEST(VisibilityByDefinition, DepthTestAtEverySample) {
                         for (int x = 0; x < side; ++x) {
                             const std::int32_t sx = 256 * (job.x0 + x) + job.offset.x,
                                                sy = 256 * (job.y0 + y) + job.offset.y;
-                            if (!inside(v[0], v[1], sx, sy) || !inside(v[1], v[2], sx, sy) ||
-                                !inside(v[2], v[0], sx, sy))
-                                continue;
+                            if (!covers(v, sx, sy)) continue;
                             ++covered;
                             const std::size_t at = place_of(x, y, side);
                             const float z = t.depth.at(sx, sy);
