@@ -84,6 +84,8 @@ RasterCounters RasterEngine::draw(const Frame& frame, const ShadingContext& shad
         add(counters.tiles, tile->counters);
         counters.pixels_covered += tile->pixels_covered;
     }
+    // Cut-outs and transparent triangles are counted in any case: a part of the sums would mislead.
+    if (!settings.count) counters.tiles.samples_covered = counters.tiles.fragments_passed = 0;
     return counters;
 }
 

@@ -17,6 +17,7 @@ std::vector<Isa> all_isas();  // of this processor
 
 // How many pixels differ; all of them where size or format do.
 std::uint64_t differing(const Image& a, const Image& b);
+// Of the planes that the second one has.
 void expect_equal_planes(const RenderResult& reference, const RenderResult& r, const std::string& what);
 // Planes, and the counters that both engines have.
 void expect_equal(const RenderResult& reference, const RenderResult& r, const std::string& what);

@@ -42,26 +42,6 @@ TEST_P(FilmKernels, FindVisible) {
     }
 }
 
-// A part of a picture: rows of `width` pixels, `stride` apart; the last one ends where memory ends.
-template <class T>
-struct Window {
-    GuardedArray<T> pixels;
-    std::size_t stride, width, height;
-
-    Window(std::size_t w, std::size_t h, std::size_t gap)
-        : pixels((h - 1) * (w + gap) + w), stride(w + gap), width(w), height(h) {
-        std::memset(pixels.data(), 0x5a, pixels.size() * sizeof(T));
-    }
-    bool gaps_changed() const {
-        std::vector<T> untouched(1);
-        std::memset(untouched.data(), 0x5a, sizeof(T));
-        for (std::size_t y = 0; y + 1 < height; ++y)
-            for (std::size_t x = width; x < stride; ++x)
-                if (std::memcmp(&pixels[y * stride + x], untouched.data(), sizeof(T)) != 0) return true;
-        return pixels.changed();
-    }
-};
-
 TEST_P(FilmKernels, Develop) {
     Random random(72);
     constexpr float kOdd[] = {0.0f,
@@ -94,7 +74,7 @@ TEST_P(FilmKernels, Develop) {
                 planes[c][i] = planes[3][i] == 0 ? 0 : random.in(0, random.below(4) ? 1.0f : 20.0f) * planes[3][i];
             if (odd && random.below(8) == 0) planes[random.below(4)][i] = kOdd[random.below(std::size(kOdd))];
         }
-        job.r = planes[0].data();
+        job.r = round % 16 == 0 ? nullptr : planes[0].data();  // without sums: the background
         job.g = planes[1].data();
         job.b = planes[2].data();
         job.alpha = planes[3].data();

@@ -200,6 +200,17 @@ std::uint64_t mask_in_picture(const SmallTriangle& t) {
     return inside & (t.rows[0] | static_cast<std::uint64_t>(t.rows[1]) << 32);
 }
 
+bool covers(const SnappedVertex (&v)[3], std::int32_t x, std::int32_t y) {
+    for (int k = 0; k < 3; ++k) {
+        const SnappedVertex &a = v[k], &b = v[(k + 1) % 3];
+        const std::int64_t dx = static_cast<std::int64_t>(b.x) - a.x, dy = static_cast<std::int64_t>(b.y) - a.y;
+        const std::int64_t e = dx * (static_cast<std::int64_t>(y) - a.y) - dy * (static_cast<std::int64_t>(x) - a.x);
+        const bool top_left = dy < 0 || (dy == 0 && dx > 0);
+        if (e < 0 || (e == 0 && !top_left)) return false;
+    }
+    return true;
+}
+
 bool same_floats(const float* a, const float* b, std::size_t count) {
     for (std::size_t i = 0; i < count; ++i)
         if (std::bit_cast<std::uint32_t>(a[i]) != std::bit_cast<std::uint32_t>(b[i]) && (a[i] == a[i] || b[i] == b[i]))

@@ -82,9 +82,9 @@ TEST_P(RasterMemory, CARD8_BytesPerVisibleTriangleAndPixel) {
         constexpr std::int64_t kPixels = std::int64_t{kWidth} * kHeight;
         const std::int64_t allowed = 150 * visible + 40 * kPixels;
         EXPECT_LE(used, allowed);
-        std::printf("%s, %d threads: %.1f MB of %.1f; %.1f bytes per triangle that is drawn, beside 40 per pixel\n",
+        std::printf("%s, %d threads: %.1f MB of %.1f; beside the picture %.0f bytes per triangle that is drawn\n",
                     GetParam(), threads, static_cast<double>(used) * 1e-6, static_cast<double>(allowed) * 1e-6,
-                    static_cast<double>(used - 40 * kPixels) / static_cast<double>(visible));
+                    static_cast<double>(used - 4 * kPixels) / static_cast<double>(visible));
         // Later frames use the same memory again.
         const std::int64_t warm = live;
         peak = warm;

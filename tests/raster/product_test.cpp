@@ -18,7 +18,9 @@ using namespace test;
 constexpr int kThreads[] = {1, 2, 3, 8};
 constexpr int kTiles[] = {32, 64, 128};
 constexpr int kSamples[] = {1, 3};
-enum Factor : std::size_t { kScene, kIsa, kThread, kTile, kHierarchicalZ, kSample };
+// Not all planes take the same way through a tile.
+enum Planes { kAll, kColorOnly, kLabelsOnly };
+enum Factor : std::size_t { kScene, kIsa, kThread, kTile, kHierarchicalZ, kSample, kPlanes, kCounting };
 
 struct Subject {
     std::string name;
@@ -29,7 +31,7 @@ struct Subject {
 void run_product(const std::vector<Subject>& subjects) {
     const char* const full = std::getenv("TESSERA_FULL_EXACTNESS");
     const std::vector<Isa> isas = all_isas();
-    const std::vector<int> sizes{static_cast<int>(subjects.size()), static_cast<int>(isas.size()), 4, 3, 2, 2};
+    const std::vector<int> sizes{static_cast<int>(subjects.size()), static_cast<int>(isas.size()), 4, 3, 2, 2, 3, 2};
     // By scene and number of samples, so that each reference is made once.
     std::map<std::pair<int, int>, std::vector<std::vector<int>>> rows;
     for (const std::vector<int>& row : full&& std::string(full) == "1" ? full_product(sizes) : all_pairs(sizes))
@@ -47,11 +49,24 @@ void run_product(const std::vector<Subject>& subjects) {
             o.threads = kThreads[value(kThread)];
             o.raster.tile_side = kTiles[value(kTile)];
             o.raster.hierarchical_z = value(kHierarchicalZ) == 0;
+            const auto planes = static_cast<Planes>(c[kPlanes]);
+            o.raster.count_samples = value(kCounting) == 0;  // the code without it is another
+            o.want_linear = planes == kAll;
+            o.want_color = planes != kLabelsOnly;
+            o.want_depth = o.want_primitive = planes != kColorOnly;
             std::string what = s.name;
             what += std::string(", ") + name(o.isa);
-            for (const int v : {o.samples, o.threads, o.raster.tile_side, int{o.raster.hierarchical_z}})
+            for (const int v : {o.samples, o.threads, o.raster.tile_side, int{o.raster.hierarchical_z}, int{planes},
+                                int{o.raster.count_samples}})
                 what += ", " + std::to_string(v);
-            expect_equal(reference, render(s.scene, o), what);
+            const RenderResult r = render(s.scene, o);
+            EXPECT_EQ(r.linear.width() > 0, o.want_linear) << what;
+            EXPECT_EQ(r.color.width() > 0, o.want_color) << what;
+            EXPECT_EQ(r.depth.width() > 0 && r.primitive.width() > 0, o.want_depth) << what;
+            expect_equal(reference, r, what);
+            if (planes != kLabelsOnly && reference.stats.fragments_passed > 0) {
+                EXPECT_EQ(r.stats.samples_tested > 0, o.raster.count_samples) << what;
+            }
         }
     }
 }

@@ -143,45 +143,110 @@ void expect_same(const Planes& a, const Planes& b, std::size_t count, const std:
 }
 
 // Tiles that show nothing, one triangle, few per vector, and another one at every pixel.
-TEST_P(SurfaceKernels, SameShadesOfATile) {
+constexpr int kPatterns = 6;
+void show(ShadeSetting& s, int pattern, GuardedArray<std::uint32_t>& ordinal) {
+    const std::uint32_t one = s.ordinal();
+    std::uint32_t run = one;
+    for (std::size_t i = 0; i < ordinal.size(); ++i) {
+        if (s.random.below(pattern == 3 ? 3 : 40) == 0) run = s.random.below(3) ? s.ordinal() : 0;
+        ordinal[i] = pattern == 0 ? 0 : pattern == 1 ? one : pattern == 2 ? s.ordinal() : run;
+        if (pattern == 5 && s.random.below(9)) ordinal[i] = 0;
+    }
+}
+
+// Calls test(setting, job, what) with jobs of every material, layout and pattern, still without planes.
+template <class Test>
+void for_each_shaded_tile(Test&& test) {
     for (std::uint32_t material = 0; material < KernelWorld::kMaterials; ++material)
         for (const bool bare : {false, true}) {
             ShadeSetting s(30 + material, material, bare);
             ASSERT_GT(s.seen, 8u);
-            for (int pattern = 0; pattern < 6; ++pattern) {
-                const int side = 32 << pattern % 3;
-                GuardedArray<std::uint32_t> ordinal(tile_pixels(side));
-                const std::uint32_t one = s.ordinal();
-                std::uint32_t run = one;
-                for (std::size_t i = 0; i < ordinal.size(); ++i) {
-                    if (s.random.below(pattern == 3 ? 3 : 40) == 0) run = s.random.below(3) ? s.ordinal() : 0;
-                    ordinal[i] = pattern == 0 ? 0 : pattern == 1 ? one : pattern == 2 ? s.ordinal() : run;
-                    if (pattern == 5 && s.random.below(9)) ordinal[i] = 0;
-                }
-                for (const bool first : {true, false}) {
-                    ShadeJob job = s.job(material);
-                    job.x0 = side;
-                    job.y0 = 0;
-                    job.side = side;
-                    job.offset = {static_cast<std::int32_t>(s.random.below(256)), 77};
-                    job.ordinal = ordinal.data();
-                    job.first = first;
-                    Planes got(ordinal.size()), want(ordinal.size());
-                    GuardedArray<std::uint64_t> hit_got(ordinal.size() / kBlockPixels), hit_want(hit_got.size());
-                    for (std::size_t i = 0; i < hit_got.size(); ++i) hit_got[i] = hit_want[i] = i << 60;
-                    got.point(job);
-                    job.hit = hit_got.data();
-                    kernels().shade_tile(job);
-                    want.point(job);
-                    job.hit = hit_want.data();
-                    scalar().shade_tile(job);
-                    expect_same(got, want, ordinal.size(),
-                                "material " + std::to_string(material) + ", pattern " + std::to_string(pattern));
-                    ASSERT_TRUE(same_bytes(hit_got, hit_want));
-                    ASSERT_FALSE(hit_got.changed());
-                }
+            for (int pattern = 0; pattern < kPatterns; ++pattern) {
+                ShadeJob job = s.job(material);
+                job.side = 32 << pattern % 3;
+                job.x0 = job.side;
+                job.offset = {static_cast<std::int32_t>(s.random.below(256)), 77};
+                GuardedArray<std::uint32_t> ordinal(tile_pixels(job.side));
+                show(s, pattern, ordinal);
+                job.ordinal = ordinal.data();
+                test(s, job, "material " + std::to_string(material) + ", pattern " + std::to_string(pattern));
+                if (testing::Test::HasFatalFailure()) return;
             }
         }
+}
+
+struct Hits {
+    GuardedArray<std::uint64_t> blocks;
+    explicit Hits(int side) : blocks(tile_pixels(side) / kBlockPixels) {
+        for (std::size_t i = 0; i < blocks.size(); ++i) blocks[i] = i << 60;
+    }
+};
+
+TEST_P(SurfaceKernels, SameShadesOfATile) {
+    for_each_shaded_tile([&](const ShadeSetting&, ShadeJob job, const std::string& what) {
+        for (const bool first : {true, false}) {
+            job.first = first;
+            const std::size_t pixels = tile_pixels(job.side);
+            Planes got(pixels), want(pixels);
+            Hits hit_got(job.side), hit_want(job.side);
+            got.point(job);
+            job.hit = hit_got.blocks.data();
+            kernels().shade_tile(job);
+            want.point(job);
+            job.hit = hit_want.blocks.data();
+            scalar().shade_tile(job);
+            expect_same(got, want, pixels, what);
+            ASSERT_TRUE(same_bytes(hit_got.blocks, hit_want.blocks));
+            ASSERT_FALSE(hit_got.blocks.changed());
+        }
+    });
+}
+
+// One sample a pixel, developed as it is shaded: the same pixels on one lane, and by way of the sums.
+TEST_P(SurfaceKernels, SamePixelsOfATileDevelopedAtOnce) {
+    for_each_shaded_tile([&](ShadeSetting& s, ShadeJob job, const std::string& what) {
+        const auto part = [&] {
+            const auto side = static_cast<std::uint32_t>(job.side);
+            return s.random.below(2) ? job.side : 1 + static_cast<int>(s.random.below(side));
+        };
+        DevelopJob film{};
+        film.film = {
+            0.8f, static_cast<ToneMap>(s.random.below(3)), {0.2f, 0.4f, 0.1f, s.random.below(2) ? 1.0f : 0.0f}};
+        film.film.encoding = s.random.below(2) ? Encoding::kSrgb : Encoding::kLinear;
+        film.weight = 1;
+        film.side = job.side;
+        film.width = part();
+        film.height = part();
+        using Pixels = Window<std::uint32_t>;
+        const auto w = static_cast<std::size_t>(film.width), h = static_cast<std::size_t>(film.height);
+        Pixels got(w, h, 11), want(w, h, 11), summed(w, h, 11);
+        film.stride = 4 * got.stride;
+        const auto develop_into = [&](Pixels& p) { film.rgba = reinterpret_cast<std::uint8_t*>(p.pixels.data()); };
+        Hits hit_got(job.side), hit_want(job.side);
+        job.first = true;
+        job.develop = &film;
+        develop_into(got);
+        job.hit = hit_got.blocks.data();
+        kernels().shade_tile(job);
+        develop_into(want);
+        job.hit = hit_want.blocks.data();
+        scalar().shade_tile(job);
+        ASSERT_TRUE(same_bytes(got.pixels, want.pixels)) << what;
+        ASSERT_TRUE(same_bytes(hit_got.blocks, hit_want.blocks)) << what;
+        ASSERT_FALSE(got.gaps_changed() || want.gaps_changed() || hit_got.blocks.changed()) << what;
+
+        Planes sums(tile_pixels(job.side));
+        job.develop = nullptr;
+        sums.point(job);
+        kernels().shade_tile(job);
+        film.r = sums.r.data();
+        film.g = sums.g.data();
+        film.b = sums.b.data();
+        film.alpha = sums.alpha.data();
+        develop_into(summed);
+        kernels().develop(film);
+        ASSERT_TRUE(same_bytes(got.pixels, summed.pixels)) << what;
+    });
 }
 
 TEST_P(SurfaceKernels, SameShadesOfPoints) {

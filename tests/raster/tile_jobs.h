@@ -111,4 +111,24 @@ bool same_bytes(const GuardedArray<T>& a, const GuardedArray<T>& b) {
     return std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0;
 }
 
+// A part of a picture: rows of `width` pixels, `stride` apart; the last one ends where memory ends.
+template <class T>
+struct Window {
+    GuardedArray<T> pixels;
+    std::size_t stride, width, height;
+
+    Window(std::size_t w, std::size_t h, std::size_t gap)
+        : pixels((h - 1) * (w + gap) + w), stride(w + gap), width(w), height(h) {
+        std::memset(pixels.data(), 0x5a, pixels.size() * sizeof(T));
+    }
+    bool gaps_changed() const {
+        std::vector<T> untouched(1);
+        std::memset(untouched.data(), 0x5a, sizeof(T));
+        for (std::size_t y = 0; y + 1 < height; ++y)
+            for (std::size_t x = width; x < stride; ++x)
+                if (std::memcmp(&pixels[y * stride + x], untouched.data(), sizeof(T)) != 0) return true;
+        return pixels.changed();
+    }
+};
+
 }  // namespace tessera::test

@@ -65,6 +65,22 @@ void for_each_tile(std::uint32_t seed, int rounds, Visit&& visit) {
 
 class VisibilityKernel : public KernelTest {};
 
+void expect_same(const VisibilityRun& got, const VisibilityRun& want) {
+    ASSERT_FALSE(got.wrote_before() || want.wrote_before());
+    ASSERT_TRUE(same_bytes(got.depth, want.depth));
+    ASSERT_TRUE(same_bytes(got.ordinal, want.ordinal));
+    ASSERT_TRUE(same_bytes(got.floor, want.floor));
+    ASSERT_TRUE(same_bytes(got.overdraw, want.overdraw));
+    ASSERT_TRUE(same_bytes(got.triangles, want.triangles));
+    ASSERT_EQ(std::memcmp(&got.counters, &want.counters, sizeof got.counters), 0);
+    ASSERT_EQ(got.fragments.size(), want.fragments.size());
+    if (!got.fragments.empty()) {
+        ASSERT_EQ(std::memcmp(got.fragments.data(), want.fragments.data(),
+                              got.fragments.size() * sizeof(VisibilityRun::Fragment)),
+                  0);
+    }
+}
+
 TEST_P(VisibilityKernel, SameDepthsOrdinalsFloorsAndCounters) {
     std::uint64_t passed = 0, hidden = 0, fragments = 0;
     for_each_tile(100, 12, [&](const Setting& s, const VisibilityJob& job, std::uint32_t triangles) {
@@ -75,19 +91,7 @@ TEST_P(VisibilityKernel, SameDepthsOrdinalsFloorsAndCounters) {
         for (VisibilityRun* r : {&got, &want}) r->clear(side, width, height);
         got.run(kernels(), job);
         want.run(scalar(), job);
-        ASSERT_FALSE(got.wrote_before() || want.wrote_before());
-        ASSERT_TRUE(same_bytes(got.depth, want.depth));
-        ASSERT_TRUE(same_bytes(got.ordinal, want.ordinal));
-        ASSERT_TRUE(same_bytes(got.floor, want.floor));
-        ASSERT_TRUE(same_bytes(got.overdraw, want.overdraw));
-        ASSERT_TRUE(same_bytes(got.triangles, want.triangles));
-        ASSERT_EQ(std::memcmp(&got.counters, &want.counters, sizeof got.counters), 0);
-        ASSERT_EQ(got.fragments.size(), want.fragments.size());
-        if (!got.fragments.empty()) {
-            ASSERT_EQ(std::memcmp(got.fragments.data(), want.fragments.data(),
-                                  got.fragments.size() * sizeof(VisibilityRun::Fragment)),
-                      0);
-        }
+        expect_same(got, want);
         passed += want.counters.fragments_passed;
         hidden += want.counters.blocks_hidden;
         fragments += want.fragments.size();
@@ -97,14 +101,79 @@ TEST_P(VisibilityKernel, SameDepthsOrdinalsFloorsAndCounters) {
     EXPECT_GT(fragments, 10000u);
 }
 
-INSTANTIATE_TEST_SUITE_P(Kernels, VisibilityKernel, vector_isas(), isa_name);
-
-// One edge at a sample, exactly.
-bool inside(const SnappedVertex& a, const SnappedVertex& b, std::int64_t x, std::int64_t y) {
-    const std::int64_t dx = static_cast<std::int64_t>(b.x) - a.x, dy = static_cast<std::int64_t>(b.y) - a.y;
-    const std::int64_t e = dx * (y - a.y) - dy * (x - a.x);
-    return e > 0 || (e == 0 && (dy < 0 || (dy == 0 && dx > 0)));
+// Masks of every shape, whole ones too, at every place that meets the tile; level ones at equal depths.
+TEST_P(VisibilityKernel, MasksOverTheBordersOfTheTile) {
+    Random random(300);
+    const KernelWorld world(random);
+    const SurfaceSource source = world.source();
+    std::uint64_t covered = 0;
+    for (int round = 0; round < 60; ++round) {
+        const int side = 32 << round % 3;
+        GuardedArray<SmallTriangle> small(200);
+        for (std::size_t i = 0; i < small.size(); ++i) {
+            const auto at = [&] {  // on a border, or anywhere
+                const int inside = static_cast<int>(random.below(static_cast<std::uint32_t>(side) + 7)) - 7;
+                return side + (random.below(3)   ? inside
+                               : random.below(2) ? -static_cast<int>(random.below(8))
+                                                 : side - 1 - static_cast<int>(random.below(8)));
+            };
+            const int x = at(), y = at();
+            const auto rows = [&] { return random.below(3) ? random.below(~0u) : ~0u; };
+            const bool level = random.below(3) == 0;
+            const auto slope = [&] { return level ? 0.0f : random.in(-1e-4f, 1e-4f); };
+            const float depth = level ? 0.25f * static_cast<float>(random.below(4)) : random.in(0, 1);
+            small[i] = {{256 * x + static_cast<int>(random.below(2000)), 256 * y - 77, depth, slope(), slope(),
+                         level ? depth : 0.1f, level ? depth : 0.9f},
+                        static_cast<std::uint32_t>(x) | static_cast<std::uint32_t>(y) << 16,
+                        {rows(), rows()},
+                        static_cast<std::uint32_t>(i),
+                        0};
+        }
+        const BinRun runs[] = {{0, 1}, {1, 120}, {130, 70}};
+        const TileBin bin{small.data(), nullptr, runs, 3};
+        VisibilityJob job{};
+        job.x0 = job.y0 = job.side = side;
+        job.offset = {static_cast<std::int32_t>(random.below(256)), 128};
+        job.bins = &bin;
+        job.bin_count = 1;
+        job.source = &source;
+        job.count = round % 4 != 0;
+        std::uint32_t wanted;
+        job.overdraw = round % 4 == 1 ? &wanted : nullptr;
+        VisibilityRun got(side, 191), want(side, 191);
+        const int width = round % 2 ? side : side - 11;
+        got.clear(side, width, side);
+        want.clear(side, width, side);
+        got.run(kernels(), job);
+        want.run(scalar(), job);
+        expect_same(got, want);
+        covered += want.counters.samples_covered;
+        // By definition.
+        VisibilityRun plain(side, 191);
+        plain.clear(side, width, side);
+        std::uint32_t ordinal = 0;
+        for (const BinRun& run : runs)
+            for (std::uint32_t i = run.first; i < run.first + run.count; ++i) {
+                const SmallTriangle& t = small[i];
+                ++ordinal;
+                for (int bit = 0; bit < kBlockPixels; ++bit) {
+                    const int x = static_cast<int>(t.position & 0xffff) + bit % 8 - side,
+                              y = static_cast<int>(t.position >> 16) + bit / 8 - side;
+                    if (!(t.rows[bit / 32] >> bit % 32 & 1) || x < 0 || y < 0 || x >= side || y >= side) continue;
+                    const float z = t.depth.at(256 * (side + x) + job.offset.x, 256 * (side + y) + job.offset.y);
+                    const std::size_t place = place_of(x, y, side);
+                    if (!(z > plain.depth[place])) continue;
+                    plain.depth[place] = z;
+                    plain.ordinal[place] = ordinal;
+                }
+            }
+        ASSERT_TRUE(same_bytes(want.depth, plain.depth));
+        ASSERT_TRUE(same_bytes(want.ordinal, plain.ordinal));
+    }
+    EXPECT_GT(covered, 100000u);
 }
+
+INSTANTIATE_TEST_SUITE_P(Kernels, VisibilityKernel, vector_isas(), isa_name);
 
 // Opaque triangles only: every covered sample against the depth there, triangle after triangle; the floors
 // below every depth of their block.
@@ -140,9 +209,7 @@ TEST(VisibilityByDefinition, DepthTestAtEverySample) {
                         for (int x = 0; x < side; ++x) {
                             const std::int32_t sx = 256 * (job.x0 + x) + job.offset.x,
                                                sy = 256 * (job.y0 + y) + job.offset.y;
-                            if (!inside(v[0], v[1], sx, sy) || !inside(v[1], v[2], sx, sy) ||
-                                !inside(v[2], v[0], sx, sy))
-                                continue;
+                            if (!covers(v, sx, sy)) continue;
                             ++covered;
                             const std::size_t at = place_of(x, y, side);
                             const float z = t.depth.at(sx, sy);
