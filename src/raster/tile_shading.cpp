@@ -1,0 +1,180 @@
+// Shading of a tile: surface records of what is seen, batches by material, transparent fragments.
+#include "raster/tile.h"
+
+#include <algorithm>
+
+namespace tessera {
+
+// Surface records of everything seen, in runs of one instance.
+void Tile::make_records() {
+    VisibleJob visible{};
+    visible.ordinal = ordinal_.data();
+    visible.pixels = side_ * side_;
+    visible.triangle_count = triangle_count_;
+    visible.seen = seen_.reserve(triangle_count_ + 1);
+    visible.list = visible_.reserve(triangle_count_ + 1);
+    task_->kernels.find_visible(visible);
+    std::uint32_t count = visible.count;
+    if (!fragments_.empty()) {
+        for (const Fragment& f : fragments_) seen_[f.ordinal] = 1;
+        count = 0;
+        for (std::uint32_t i = 1; i <= triangle_count_; ++i)
+            if (seen_[i]) visible_[count++] = i;
+    }
+    std::uint32_t* record_of = record_of_.reserve(triangle_count_ + 1);
+    record_of[0] = 0;
+    batch_.reserve(count);
+    std::size_t used = 0;
+    for (std::uint32_t first = 0; first < count;) {
+        const std::uint32_t instance = triangles_[visible_[first] - 1].instance;
+        SurfaceJob job{};
+        job.source = &task_->source;
+        job.instance = &task_->frame.instances[instance];
+        job.layout = task_->layouts[instance];
+        const auto floats = static_cast<std::size_t>(surface_floats(job.layout));
+        std::uint32_t end = first;
+        for (; end < count && triangles_[visible_[end] - 1].instance == instance; ++end) {
+            batch_[end - first] = triangles_[visible_[end] - 1].triangle;
+            record_of[visible_[end]] = static_cast<std::uint32_t>(used + (end - first) * floats);
+        }
+        job.triangles = batch_.data();
+        job.count = end - first;
+        job.records = records_.reserve(used + (job.count + kMaxLanes) * floats, used) + used;
+        task_->kernels.make_surfaces(job);
+        used += job.count * floats;
+        first = end;
+    }
+    visible_[count] = 0;
+}
+
+ShadeJob Tile::shade_job(std::uint32_t instance) const {
+    ShadeJob job{};
+    job.source = &task_->source;
+    job.material = &task_->shading.materials[task_->frame.instances[instance].material];
+    job.layout = task_->layouts[instance];
+    job.records = records_.data();
+    job.record_of = record_of_.data();
+    return job;
+}
+
+void Tile::take_sample(SamplePosition offset, bool first) {
+    make_records();
+    if (fragments_.empty()) return shade_opaque(offset, first, sum_);
+    shade_opaque(offset, true, sample_);
+    compose_fragments(offset);
+    for (std::size_t c = 0; c < 4; ++c)
+        for (std::size_t i = 0; i < depth_.size(); ++i) sum_[c][i] = (first ? 0.0f : sum_[c][i]) + sample_[c][i];
+}
+
+// The nearest opaque surface of every pixel: at once where the tile shows one material, else as a list.
+void Tile::shade_opaque(SamplePosition offset, bool first, Planes& planes) {
+    std::uint32_t batch = 0;
+    bool one = true, any = false;
+    for (const std::uint32_t* o = visible_.data(); *o != 0 && one; ++o) {
+        const std::uint32_t instance = triangles_[*o - 1].instance;
+        const AlphaMode mode = task_->shading.materials[task_->frame.instances[instance].material].alpha_mode;
+        if (mode == AlphaMode::kBlend) continue;
+        one = !any || batch == task_->batch_of[instance];
+        batch = task_->batch_of[instance];
+        any = true;
+    }
+    if (one && any) {
+        const bool at_once = task_->settings.samples.size() == 1 && fragments_.empty() && !task_->targets.linear;
+        const DevelopJob film = develop_job();
+        ShadeJob job = shade_job(batch);
+        job.x0 = x0_;
+        job.y0 = y0_;
+        job.side = side_;
+        job.offset = offset;
+        job.ordinal = ordinal_.data();
+        job.first = first;
+        job.develop = at_once ? &film : nullptr;
+        job.hit = hit_.data();
+        job.r = planes[0].data();
+        job.g = planes[1].data();
+        job.b = planes[2].data();
+        job.alpha = planes[3].data();
+        developed_ = at_once;
+        task_->kernels.shade_tile(job);
+        return;
+    }
+    if (first)
+        for (std::vector<float>& plane : planes) std::fill(plane.begin(), plane.end(), 0.0f);
+    point_pixel_.clear();
+    point_ordinal_.clear();
+    for (std::uint32_t pixel = 0; pixel < ordinal_.size(); ++pixel)
+        if (ordinal_[pixel] != 0) {
+            point_pixel_.push_back(pixel);
+            point_ordinal_.push_back(ordinal_[pixel]);
+        }
+    shade_list(offset);
+    for (std::size_t i = 0; i < point_pixel_.size(); ++i) {
+        const std::uint32_t pixel = point_pixel_[i];
+        for (std::size_t c = 0; c < 3; ++c) planes[c][pixel] += point_color_[c][i];
+        planes[3][pixel] += 1.0f;
+        hit_[pixel / kBlockPixels] |= std::uint64_t{1} << pixel % kBlockPixels;
+    }
+}
+
+// Shades point_ordinal_ at point_pixel_ into point_color_, in batches of one material and layout.
+void Tile::shade_list(SamplePosition offset) {
+    const std::size_t count = point_ordinal_.size();
+    for (std::vector<float>& plane : point_color_) plane.resize(count);
+    const auto batch = [&](std::uint32_t point) {
+        return task_->batch_of[triangles_[point_ordinal_[point] - 1].instance];
+    };
+    order_.resize(count);
+    for (std::uint32_t i = 0; i < count; ++i) order_[i] = i;
+    std::stable_sort(order_.begin(), order_.end(),
+                     [&](std::uint32_t a, std::uint32_t b) { return batch(a) < batch(b); });
+    for (std::size_t first = 0; first < count;) {
+        const std::uint32_t current = batch(order_[first]);
+        std::size_t end = first + 1;
+        while (end < count && batch(order_[end]) == current) ++end;
+        const std::size_t n = end - first, padded = n + kMaxLanes;
+        batch_x_.resize(padded);
+        batch_y_.resize(padded);
+        batch_ordinal_.resize(padded);
+        for (std::vector<float>& plane : batch_color_) plane.resize(padded);
+        for (std::size_t i = 0; i < padded; ++i) {
+            const std::uint32_t point = order_[first + std::min(i, n - 1)];
+            const TilePixel p(point_pixel_[point], side_);
+            batch_x_[i] = 256 * (x0_ + p.x) + offset.x;
+            batch_y_[i] = 256 * (y0_ + p.y) + offset.y;
+            batch_ordinal_[i] = point_ordinal_[point];
+        }
+        ShadeJob job = shade_job(current);
+        job.x = batch_x_.data();
+        job.y = batch_y_.data();
+        job.list = batch_ordinal_.data();
+        job.count = static_cast<std::uint32_t>(n);
+        job.r = batch_color_[0].data();
+        job.g = batch_color_[1].data();
+        job.b = batch_color_[2].data();
+        job.alpha = batch_color_[3].data();
+        task_->kernels.shade_points(job);
+        for (std::size_t i = 0; i < n; ++i)
+            for (std::size_t c = 0; c < 4; ++c) point_color_[c][order_[first + i]] = batch_color_[c][i];
+        first = end;
+    }
+}
+
+// Lays the transparent fragments over the sample's colours, far to near.
+void Tile::compose_fragments(SamplePosition offset) {
+    point_pixel_.clear();
+    point_ordinal_.clear();
+    for (const Fragment& f : fragments_) {
+        point_pixel_.push_back(f.pixel);
+        point_ordinal_.push_back(f.ordinal);
+    }
+    shade_list(offset);
+    for (std::size_t i = 0; i < point_pixel_.size(); ++i) {
+        const std::uint32_t pixel = point_pixel_[i];
+        const float a = point_color_[3][i];
+        for (std::size_t c = 0; c < 3; ++c) sample_[c][pixel] = point_color_[c][i] * a + sample_[c][pixel] * (1.0f - a);
+        sample_[3][pixel] = a + sample_[3][pixel] * (1.0f - a);
+        hit_[pixel / kBlockPixels] |= std::uint64_t{1} << pixel % kBlockPixels;
+    }
+}
+
+}  // namespace tessera
