@@ -100,6 +100,15 @@ void KernelMesh::place_triangle(Random& random, Place place, std::uint32_t trian
                 if (k == 1 || (k == 2 && random.below(2))) x = middle_x, y = middle_y;
                 if (k == 2) x = middle_x + 3, y = middle_y;
                 break;
+            case Place::kSampleCentres: {
+                const auto centre = [&](float at) {
+                    const std::uint32_t reach = triangle % 3 ? 7 : 60;
+                    return std::floor(at) + 0.5f + static_cast<float>(random.below(reach)) - 3;
+                };
+                x = centre(middle_x);
+                y = centre(middle_y);
+                break;
+            }
             case Place::kTileBorders:
                 x = beside(static_cast<float>(32 * random.below(9)));
                 y = beside(static_cast<float>(32 * random.below(5)));

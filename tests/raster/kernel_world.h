@@ -33,12 +33,13 @@ inline std::string isa_name(const testing::TestParamInfo<Isa>& info) { return na
 
 // Where triangles lie and what is wrong with them.
 enum class Place {
-    kSubPixel,     // about a pixel in size
-    kSmall,        // up to 8 pixels
-    kMedium,       // up to the sides where 32-bit areas end
-    kHuge,         // up to the guard band
-    kDegenerate,   // points and lines
-    kTileBorders,  // vertices on or beside multiples of 32 pixels
+    kSubPixel,       // about a pixel in size
+    kSmall,          // up to 8 pixels
+    kMedium,         // up to the sides where 32-bit areas end
+    kHuge,           // up to the guard band
+    kDegenerate,     // points and lines
+    kSampleCentres,  // vertices and level edges on samples: ties of the fill rule
+    kTileBorders,    // vertices on or beside multiples of 32 pixels
     kPictureBorders,
     kGuardBand,  // on its edge, and just beyond
     kBehindEye,  // crossing the near plane
@@ -46,9 +47,10 @@ enum class Place {
     kLayers,     // level, each twice: equal depths
     kMixed,      // all of these
 };
-inline constexpr Place kPlaces[] = {Place::kSubPixel,   Place::kSmall,       Place::kMedium,         Place::kHuge,
-                                    Place::kDegenerate, Place::kTileBorders, Place::kPictureBorders, Place::kGuardBand,
-                                    Place::kBehindEye,  Place::kUnusable,    Place::kLayers,         Place::kMixed};
+inline constexpr Place kPlaces[] = {
+    Place::kSubPixel,      Place::kSmall,       Place::kMedium,         Place::kHuge,      Place::kDegenerate,
+    Place::kSampleCentres, Place::kTileBorders, Place::kPictureBorders, Place::kGuardBand, Place::kBehindEye,
+    Place::kUnusable,      Place::kLayers,      Place::kMixed};
 
 // A mesh before a lens of 90 degrees that sees a picture of 256 x 128 pixels, so that pixel positions of
 // 1/256 reach clip space exactly.
