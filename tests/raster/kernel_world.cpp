@@ -201,14 +201,6 @@ void make_one_record(const InstanceView& instance, std::uint32_t triangle, const
     if (setup.visible()) make_surface_record(instance, triangle, setup, projection, layout, record);
 }
 
-std::uint64_t mask_in_picture(const SmallTriangle& t) {
-    const int x = static_cast<int>(t.position & 0xffffu), y = static_cast<int>(t.position >> 16);
-    std::uint64_t inside = 0;
-    for (int bit = 0; bit < kBlockPixels; ++bit)
-        if (x + bit % 8 < KernelMesh::kWidth && y + bit / 8 < KernelMesh::kHeight) inside |= std::uint64_t{1} << bit;
-    return inside & (t.rows[0] | static_cast<std::uint64_t>(t.rows[1]) << 32);
-}
-
 bool covers(const SnappedVertex (&v)[3], std::int32_t x, std::int32_t y) {
     for (int k = 0; k < 3; ++k) {
         const SnappedVertex &a = v[k], &b = v[(k + 1) % 3];

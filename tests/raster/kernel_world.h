@@ -120,9 +120,6 @@ struct SetupOptions {
 void set_up(const RasterKernels& kernels, const KernelMesh& mesh, std::uint32_t instance, const SetupOptions& options,
             SetupResult& result);
 
-// A small triangle's coverage within the picture: what its mask holds beyond is nobody's.
-std::uint64_t mask_in_picture(const SmallTriangle& t);
-
 // Whether a sample lies in a triangle of clockwise vertices: the edges in 64 bits, the rule spelled out.
 bool covers(const SnappedVertex (&v)[3], std::int32_t x, std::int32_t y);
 
