@@ -1,0 +1,8 @@
+find_package(benchmark REQUIRED)
+target_link_libraries(tessera_raster_kernel_bench PRIVATE benchmark::benchmark)
+foreach(name frame front_end visibility surfaces stages)
+  target_sources(tessera_raster_kernel_bench PRIVATE ${CMAKE_CURRENT_SOURCE_DIR}/raster_kernel_${name}.cpp)
+endforeach()
+foreach(name workloads workload_meshes parse)
+  target_sources(tessera_raster_kernel_bench PRIVATE ${PROJECT_SOURCE_DIR}/src/cli/${name}.cpp)
+endforeach()

@@ -1,0 +1,92 @@
+// What tessera_raster_kernel_bench measures: jobs of the rasterizer's kernels as they occur in the frames of
+// the built-in workloads, at 1920 x 1080 with tiles of 128 pixels. One thread, but for the stages.
+#pragma once
+
+#include "cli/workloads.h"
+#include "core/parallel.h"
+#include "raster/tile.h"
+#include "render/options.h"
+#include "render/shading_scene.h"
+
+#include <cstddef>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace tessera::bench {
+
+using Bytes = std::vector<std::byte>;
+
+template <class T>
+void append(Bytes& bytes, const T* data, std::size_t count) {
+    const auto* first = reinterpret_cast<const std::byte*>(data);
+    bytes.insert(bytes.end(), first, first + count * sizeof(T));
+}
+
+// A workload ready to draw, set up and binned by the scalar kernels. Made once, then kept.
+class BenchFrame {
+  public:
+    // The name of a workload, or of one with "_shuffled" behind it: its triangles in random order.
+    static BenchFrame& of(const std::string& name);
+    explicit BenchFrame(const std::string& name);
+
+    FrontEndInput input(const RasterKernels& kernels) const;
+    TileTask task(const RasterSettings& settings, const RasterTargets& targets, const FrontEnd& front) const;
+    // Settings of a picture drawn with this instruction set.
+    RasterSettings settings(Isa isa) const;
+
+    cli::Workload workload;
+    Arena arena{1};
+    std::unique_ptr<PreparedScene> prepared;
+    std::unique_ptr<ShadingScene> shading;
+    Frame frame;
+    const TileGrid grid;
+    FrontEnd front;
+
+  private:
+    Watchdog watchdog_;
+    std::vector<SamplePosition> samples_;
+    std::function<void()> checkpoint_ = [] {};
+};
+
+// One kernel's job in the making.
+struct KernelWork {
+    std::uint64_t items;                              // pixels, triangles, vertices or indices
+    std::function<void()> clear;                      // what it writes; not timed
+    std::function<double(const RasterKernels&)> run;  // seconds of processor time in the kernel
+    std::function<Bytes()> output;                    // all that the last run wrote
+};
+
+struct KernelCase {
+    std::string name;  // kernel/case
+    std::function<KernelWork()> make;
+};
+
+// A stage of a whole frame on a number of threads.
+struct StageWork {
+    std::uint64_t items;
+    std::function<void()> run;
+    std::function<Bytes()> output;
+};
+struct StageCase {
+    std::string name;  // stage/workload
+    std::function<StageWork(Isa, int threads)> make;
+};
+
+// Of this thread, in seconds.
+double processor_time();
+
+template <class Run>
+double seconds_of(Run&& run) {
+    const double start = processor_time();
+    run();
+    return processor_time() - start;
+}
+
+std::vector<KernelCase> front_end_cases();
+std::vector<KernelCase> visibility_cases();
+std::vector<KernelCase> surface_cases();
+std::vector<StageCase> stage_cases();
+
+}  // namespace tessera::bench
