@@ -1,7 +1,7 @@
 // Speed of every kernel of the rasterizer on every instruction set of this processor, and of its two stages on
 // one and on all threads. Kernels: processor time; stages: wall time. Before it is timed, a kernel's output is
 // compared with the scalar kernel's; a difference is an error. For example
-//     tessera_raster_kernel_bench --benchmark_filter='^visibility/.*/(avx2|avx512)$'
+//     tessera_raster_kernel_bench --benchmark_filter='^visibility/.*/(avx2|avx512)/'
 #include "raster_kernel_cases.h"
 
 #include "core/fp_environment.h"
