@@ -13,15 +13,12 @@ inline void find_visible(VisibleJob& job) {
     std::uint32_t last = 0;
     for (int at = 0; at < job.pixels; at += kWidth) {
         const Uint ids = load<Uint>(job.ordinal + at);
+        const Mask known = (ids == Uint(last)) | (ids == Uint(0u));
+        if (all(known)) continue;
+        // One more triangle by name, several lane by lane.
+        last = job.ordinal[at + __builtin_ctz(mask_bits(!known))];
+        job.seen[last] = 1;
         if (all((ids == Uint(last)) | (ids == Uint(0u)))) continue;
-        // A few different ones by name, more of them lane by lane.
-        std::uint32_t rest = mask_bits(ids != Uint(last));
-        for (int n = 0; n < 3 && rest; ++n) {
-            last = job.ordinal[at + __builtin_ctz(rest)];
-            job.seen[last] = 1;
-            rest &= mask_bits(ids != Uint(last));
-        }
-        if (!rest) continue;
         for (int i = 0; i < kWidth; ++i) job.seen[job.ordinal[at + i]] = 1;
     }
     job.count = 0;
