@@ -47,6 +47,7 @@ KernelWork front_end_work(const std::string& workload, SetProbe set_probe) {
         BenchFrame& frame;
         FrontEnd front;
         Bytes output;
+        explicit State(BenchFrame& f) : frame(f) {}
     };
     const auto state = std::make_shared<State>(BenchFrame::of(workload));
     const auto draw = [state, set_probe](const RasterKernels& kernels, Bytes* output) {
