@@ -20,7 +20,8 @@ set(TESSERA_ISA_FLAGS_avx512 -march=skylake-avx512 -mprefer-vector-width=512)
 # wait for: whole pieces, and registers instead of memory for larger structures.
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   foreach(isa sse4 avx2 avx512)
-    list(APPEND TESSERA_ISA_FLAGS_${isa} "SHELL:--param sra-max-scalarization-size-Ospeed=8192")
+    list(APPEND TESSERA_ISA_FLAGS_${isa} "SHELL:--param sra-max-scalarization-size-Ospeed=8192"
+      "SHELL:--param sra-max-propagations=1024")
   endforeach()
   list(APPEND TESSERA_ISA_FLAGS_avx2 -mmove-max=256 -mstore-max=256)
   list(APPEND TESSERA_ISA_FLAGS_avx512 -mmove-max=512 -mstore-max=512)

@@ -18,6 +18,10 @@
 // For every function that several instruction sets may instantiate: an inlined function leaves no
 // symbol that the linker could share between them.
 #define TESSERA_INLINE inline __attribute__((always_inline))
+// For what is rare, in functions over the number type only (see above).
+#define TESSERA_COLD __attribute__((noinline, cold))
+// The same for a lambda, between its parameters and its body.
+#define TESSERA_INLINE_LAMBDA __attribute__((always_inline))
 
 namespace tessera {
 

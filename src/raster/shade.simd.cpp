@@ -11,6 +11,6 @@ void shade_tile(const ShadeJob& job) {
     });
 }
 
-void shade_points(const ShadeJob& job) { shade_points_as<Textured<AnyLayout>>(job); }
+void shade_points(const ShadeJob& job) { shade_points_as<Unknown>(job); }
 
 }  // namespace tessera::TESSERA_ISA_NAMESPACE

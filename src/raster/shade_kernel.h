@@ -6,25 +6,29 @@
 
 namespace tessera::TESSERA_ISA_NAMESPACE {
 
-// What the lanes of a batch share.
+// What the lanes of a batch share: copies, which no store of pixels can change.
 struct Batch {
     const ShadeJob& job;
-    const ShadingContext& context;
-    const MaterialView& material;
+    const ShadingContext context;
+    const MaterialView material;
     const PictureRays rays;
 
     explicit Batch(const ShadeJob& j)
         : job(j), context(*j.source->shading), material(*j.material), rays(j.source->projection) {}
 };
 
-// Materials without any texture.
-template <class Layout>
-struct Untextured : Layout {
-    static constexpr bool kTextured = false;
+// What a kernel knows of its jobs beforehand: planes, whether there are textures, and the shading family.
+template <class Layout, ShadingFamily kFamily, bool kTextured>
+struct Known : Layout {
+    static TESSERA_INLINE ShadedPoint<Float> shade_point(const Batch& batch, const SurfacePoint<Float>& s) {
+        return shade_as<kFamily, kTextured>(batch.context, batch.material, s,
+                                            [](int, const LightSample<Float>&) { return Float(1.0f); });
+    }
 };
-template <class Layout>
-struct Textured : Layout {
-    static constexpr bool kTextured = true;
+struct Unknown : AnyLayout {
+    static TESSERA_INLINE ShadedPoint<Float> shade_point(const Batch& batch, const SurfacePoint<Float>& s) {
+        return shade(batch.context, batch.material, s, [](int, const LightSample<Float>&) { return Float(1.0f); });
+    }
 };
 
 // Calls visit(kind) with the kind of the job.
@@ -32,10 +36,17 @@ template <class Visit>
 TESSERA_INLINE void with_kind(const ShadeJob& job, Visit&& visit) {
     bool textured = false;
     for (const TextureInput& in : job.material->inputs) textured |= in.texture != nullptr;
-    if (!textured && job.layout == NormalOnly::kLayout) return visit(Untextured<NormalOnly>());
-    if (textured && job.layout == NormalAndUv::kLayout) return visit(Textured<NormalAndUv>());
-    if (!textured && job.layout == ColorOnly::kLayout && job.develop) return visit(Untextured<ColorOnly>());
-    visit(Textured<AnyLayout>());
+    const ShadingFamily family = family_of(job.material->model);
+    const bool textbook = family == ShadingFamily::kTextbook, unlit = family == ShadingFamily::kUnlit;
+    if (!textured && !unlit && job.layout == NormalOnly::kLayout)
+        return textbook ? visit(Known<NormalOnly, ShadingFamily::kTextbook, false>())
+                        : visit(Known<NormalOnly, ShadingFamily::kMicrofacet, false>());
+    if (textured && !unlit && job.layout == NormalAndUv::kLayout)
+        return textbook ? visit(Known<NormalAndUv, ShadingFamily::kTextbook, true>())
+                        : visit(Known<NormalAndUv, ShadingFamily::kMicrofacet, true>());
+    if (!textured && unlit && job.layout == ColorOnly::kLayout && job.develop)
+        return visit(Known<ColorOnly, ShadingFamily::kUnlit, false>());
+    visit(Unknown());
 }
 
 // Triangles that a vector may show before its lanes fetch records of their own.
@@ -112,38 +123,42 @@ TESSERA_INLINE ShadedPoint<Float> shade_lanes(const Batch& batch, const Uint& or
     sample_lanes<Kind>(batch.job, ordinals, used, x, y, sample, side, sign);
     const SurfacePoint<Float> s =
         surface_point(Kind::layout(batch.job), batch.rays, sample, x, y, side, sign, batch.context.footprint_scale);
-    return shade<Kind::kTextured>(batch.context, batch.material, s,
-                                  [](int, const LightSample<Float>&) { return Float(1.0f); });
+    return Kind::shade_point(batch, s);
 }
 
 inline constexpr std::uint32_t kAllLanes = (1u << (kLanes<Float> - 1) << 1) - 1;
 
-// Visits batches of lanes: a tile in the order of its blocks, or a list of points.
-// visit(ordinals, used, x, y, where the answer goes).
+// A vector of pixels of a tile.
+struct TileVector {
+    int column, row, place;  // its first pixel, in the tile and in the tile's planes
+    Float x, y;              // picture positions
+    Uint ordinals;
+    std::uint32_t used;  // lanes with an ordinal
+};
+
+// Visits the vectors of a tile in the order of its blocks.
 template <class Visit>
-TESSERA_INLINE void for_each_batch(const ShadeJob& job, Visit&& visit) {
+TESSERA_INLINE void for_each_vector_of_tile(const ShadeJob& job, Visit&& visit) {
     constexpr int kWidth = kLanes<Float>;
-    if (job.list) {
-        for (std::uint32_t i = 0; i < job.count; i += kWidth) {
-            const std::uint32_t left = job.count - i;
-            visit(load<Uint>(job.list + i), left < kWidth ? (1u << left) - 1 : kAllLanes,
-                  to_float(load<Int>(job.x + i)), to_float(load<Int>(job.y + i)), static_cast<int>(i));
-        }
-        return;
-    }
     const int blocks = job.side / kBlockSide;
-    const Int columns = lane_column(), rows = lane_row();
-    for (int block = 0; block < blocks * blocks; ++block) {
-        const int px = block % blocks * kBlockSide, py = block / blocks * kBlockSide;
-        for (int at = 0; at < kBlockPixels; at += kWidth) {
-            const int place = block * kBlockPixels + at;
-            const Uint ordinals = load<Uint>(job.ordinal + place);
-            const std::uint32_t used = mask_bits(ordinals != Uint(0u));
-            const Int column = columns + Int(px + at % kBlockSide), row = rows + Int(py + at / kBlockSide);
-            visit(ordinals, used, to_float((column << 8) + Int(256 * job.x0 + job.offset.x)),
-                  to_float((row << 8) + Int(256 * job.y0 + job.offset.y)), place);
-        }
-    }
+    // Whole numbers below 2^24, so their sums are exact.
+    const Float columns = to_float(lane_column() << 8), rows = to_float(lane_row() << 8);
+    const float x0 = static_cast<float>(256 * job.x0 + job.offset.x),
+                y0 = static_cast<float>(256 * job.y0 + job.offset.y);
+    TileVector v;
+    v.place = 0;
+    for (int block_row = 0; block_row < blocks; ++block_row)
+        for (int block_column = 0; block_column < blocks; ++block_column)
+            for (int at = 0; at < kBlockPixels; at += kWidth) {
+                v.column = block_column * kBlockSide + at % kBlockSide;
+                v.row = block_row * kBlockSide + at / kBlockSide;
+                v.x = columns + Float(x0 + static_cast<float>(256 * v.column));
+                v.y = rows + Float(y0 + static_cast<float>(256 * v.row));
+                v.ordinals = load<Uint>(job.ordinal + v.place);
+                v.used = mask_bits(v.ordinals != Uint(0u));
+                visit(v);
+                v.place += kWidth;
+            }
 }
 
 // One sample a pixel: from the surface to the picture.
@@ -153,23 +168,20 @@ inline void shade_and_develop_tile(const ShadeJob& job) {
     const DevelopJob& film = *job.develop;
     const Float zero(0.0f), one(1.0f);
     const Uint background = display_pixels(film.film, {zero, zero, zero}, zero);
-    const int blocks = job.side / kBlockSide;
-    for_each_batch(job, [&](const Uint& ordinals, std::uint32_t used, Float x, Float y, int at) {
-        const int block = at / kBlockPixels, place = at % kBlockPixels;
+    for_each_vector_of_tile(job, [&](const TileVector& v) TESSERA_INLINE_LAMBDA {
         Uint pixels = background;
-        if (used) {
-            Vec3T<Float> c = shade_lanes<Kind>(batch, ordinals, used, x, y).radiance;
+        if (v.used) {
+            Vec3T<Float> c = shade_lanes<Kind>(batch, v.ordinals, v.used, v.x, v.y).radiance;
             Float coverage = one;
-            if (used != kAllLanes) {
-                const Mask covered = ordinals != Uint(0u);
+            if (v.used != kAllLanes) {
+                const Mask covered = v.ordinals != Uint(0u);
                 c = {select(covered, c.x, zero), select(covered, c.y, zero), select(covered, c.z, zero)};
                 coverage = select(covered, one, zero);
             }
             pixels = display_pixels(film.film, c, coverage);
-            job.hit[block] |= static_cast<std::uint64_t>(used) << place;
+            job.hit[v.place / kBlockPixels] |= static_cast<std::uint64_t>(v.used) << v.place % kBlockPixels;
         }
-        store_pixels(pixels, film.rgba, film.stride, block % blocks * kBlockSide + place % kBlockSide,
-                     block / blocks * kBlockSide + place / kBlockSide, film.width, film.height);
+        store_pixels(pixels, film.rgba, film.stride, v.column, v.row, film.width, film.height);
     });
 }
 
@@ -177,8 +189,9 @@ template <class Kind>
 inline void shade_tile_as(const ShadeJob& job) {
     const Batch batch(job);
     const Float zero(0.0f);
-    for_each_batch(job, [&](const Uint& ordinals, std::uint32_t used, Float x, Float y, int at) {
-        if (!used) {
+    for_each_vector_of_tile(job, [&](const TileVector& v) TESSERA_INLINE_LAMBDA {
+        const int at = v.place;
+        if (!v.used) {
             if (!job.first) return;
             store(job.r + at, zero);
             store(job.g + at, zero);
@@ -186,30 +199,34 @@ inline void shade_tile_as(const ShadeJob& job) {
             store(job.alpha + at, zero);
             return;
         }
-        const Mask covered = ordinals != Uint(0u);
-        const ShadedPoint<Float> c = shade_lanes<Kind>(batch, ordinals, used, x, y);
-        const auto add = [&](float* plane, Float v) {
+        const Mask covered = v.ordinals != Uint(0u);
+        const ShadedPoint<Float> c = shade_lanes<Kind>(batch, v.ordinals, v.used, v.x, v.y);
+        const auto add = [&](float* plane, Float value) {
             const Float before = job.first ? zero : load<Float>(plane + at);
-            store(plane + at, before + select(covered, v, zero));
+            store(plane + at, before + select(covered, value, zero));
         };
         add(job.r, c.radiance.x);
         add(job.g, c.radiance.y);
         add(job.b, c.radiance.z);
         add(job.alpha, Float(1.0f));
-        job.hit[at / kBlockPixels] |= static_cast<std::uint64_t>(used) << at % kBlockPixels;
+        job.hit[at / kBlockPixels] |= static_cast<std::uint64_t>(v.used) << at % kBlockPixels;
     });
 }
 
 template <class Kind>
 inline void shade_points_as(const ShadeJob& job) {
     const Batch batch(job);
-    for_each_batch(job, [&](const Uint& ordinals, std::uint32_t used, Float x, Float y, int at) {
-        const ShadedPoint<Float> c = shade_lanes<Kind>(batch, ordinals, used, x, y);
-        store(job.r + at, c.radiance.x);
-        store(job.g + at, c.radiance.y);
-        store(job.b + at, c.radiance.z);
-        store(job.alpha + at, c.alpha);
-    });
+    constexpr int kWidth = kLanes<Float>;
+    for (std::uint32_t i = 0; i < job.count; i += kWidth) {
+        const std::uint32_t left = job.count - i;
+        const ShadedPoint<Float> c =
+            shade_lanes<Kind>(batch, load<Uint>(job.list + i), left < kWidth ? (1u << left) - 1 : kAllLanes,
+                              to_float(load<Int>(job.x + i)), to_float(load<Int>(job.y + i)));
+        store(job.r + i, c.radiance.x);
+        store(job.g + i, c.radiance.y);
+        store(job.b + i, c.radiance.z);
+        store(job.alpha + i, c.alpha);
+    }
 }
 
 }  // namespace tessera::TESSERA_ISA_NAMESPACE

@@ -56,7 +56,9 @@ float SurfaceSampler::alpha(std::uint32_t triangle, const double (&barycentric)[
     const Corner<float> corners[3] = {corner(index, 0), corner(index, 1), corner(index, 2)};
     Barycentrics<float> b{};
     for (int i = 0; i < 3; ++i) b.b[i] = static_cast<float>(barycentric[i]);
-    return base_color(material(triangle), surface_point(*instance_, corners, b, 1.0f, context_.footprint_scale)).w;
+    return base_color(material(triangle),
+                      surface_point(*instance_, corners, b, {0, 0, 1}, 1.0f, context_.footprint_scale))
+        .w;
 }
 
 float SurfaceSampler::alpha(std::uint32_t triangle, SamplePosition at) {

@@ -24,10 +24,10 @@ struct DisplayPixel {
     IntOf<F> r, g, b, a;
 };
 
-// The 8-bit code nearest to a linear value: what is below 0 or NaN becomes 0, what is above 1 becomes 255.
+// The 8-bit code nearest to a value of 0 .. 1.
 template <class F>
 TESSERA_INLINE IntOf<F> linear8_from_linear(F x) {
-    return truncate_int(clamp(x, F(0.0f), F(1.0f)) * F(255.0f) + F(0.5f));
+    return truncate_int(x * F(255.0f) + F(0.5f));
 }
 
 // `premultiplied` is radiance times coverage, the mean over the samples of a pixel; `coverage` the
@@ -62,8 +62,9 @@ TESSERA_INLINE DisplayPixel<F> develop(const FilmView& film, const Vec3T<F>& pre
         r = (r * a + F(film.background[0]) * behind) * inverse;
         g = (g * a + F(film.background[1]) * behind) * inverse;
         b = (b * a + F(film.background[2]) * behind) * inverse;
+        r = saturate(r), g = saturate(g), b = saturate(b);
     }
-    const IntOf<F> a8 = truncate_int(alpha * F(255.0f) + F(0.5f));
+    const IntOf<F> a8 = linear8_from_linear(alpha);
     if (film.encoding == Encoding::kLinear)
         return {linear8_from_linear(r), linear8_from_linear(g), linear8_from_linear(b), a8};
     return {srgb8_from_linear(r), srgb8_from_linear(g), srgb8_from_linear(b), a8};

@@ -28,34 +28,39 @@ struct AmbientView {
 
 template <class F>
 struct LightSample {
-    Vec3T<F> to_light;    // unit
-    F distance;           // infinite for directional lights
-    Vec3T<F> irradiance;  // on a surface that faces the light; times 1/pi it is I_l of the textbooks
+    Vec3T<F> to_light;  // unit
+    F distance;         // infinite for directional lights
+    F strength;         // factor on the light's intensity
+    Vec3T<F>
+        irradiance;  // on a surface that faces the light: the intensity times that; 1/pi of it is the textbooks' I_l
 };
 
 inline constexpr float kPi = 3.14159265358979323846f;
 
 template <class F>
 TESSERA_INLINE LightSample<F> sample_light(const LightView& light, const Vec3T<F>& at) {
-    const Vec3T<F> intensity = Vec3T<F>::load(light.intensity), axis = Vec3T<F>::load(light.to_light);
+    const Vec3T<F> intensity = Vec3T<F>::load(light.intensity);
     // The textbooks' constant light arrives as I_l = intensity, that is irradiance pi * intensity.
-    const bool constant = light.falloff == LightFalloff::kConstant;
-    if (light.type == LightType::kDirectional) return {axis, F(3.4e38f), intensity * F(constant ? kPi : 1.0f)};
-
-    const Vec3T<F> d = Vec3T<F>::load(light.position) - at;
-    const F squared = max(dot(d, d), F(1e-20f));
-    const F distance = sqrt(squared);
-    const Vec3T<F> to_light = d * (F(1.0f) / distance);
-    F strength = constant ? F(kPi) : F(1.0f) / squared;
-    if (light.inverse_range > 0.0f) {
-        const F r = distance * F(light.inverse_range);
-        strength = strength * saturate(F(1.0f) - (r * r) * (r * r));
+    F strength(light.falloff == LightFalloff::kConstant ? kPi : 1.0f), distance(3.4e38f);
+    F x(light.to_light[0]), y(light.to_light[1]), z(light.to_light[2]);
+    if (light.type != LightType::kDirectional) {
+        const Vec3T<F> axis{x, y, z}, d = Vec3T<F>::load(light.position) - at;
+        const F squared = max(dot(d, d), F(1e-20f));
+        distance = sqrt(squared);
+        const F inverse = F(1.0f) / distance;
+        x = d.x * inverse, y = d.y * inverse, z = d.z * inverse;
+        if (light.falloff != LightFalloff::kConstant) strength = F(1.0f) / squared;
+        if (light.inverse_range > 0.0f) {
+            const F r = distance * F(light.inverse_range);
+            strength = strength * saturate(F(1.0f) - (r * r) * (r * r));
+        }
+        if (light.type == LightType::kSpot) {
+            const F cosine = axis.x * x + axis.y * y + axis.z * z;
+            const F angular = saturate(cosine * F(light.spot_scale) + F(light.spot_offset));
+            strength = strength * (light.profile == SpotProfile::kCones ? angular * angular : angular);
+        }
     }
-    if (light.type == LightType::kSpot) {
-        const F angular = saturate(dot(axis, to_light) * F(light.spot_scale) + F(light.spot_offset));
-        strength = strength * (light.profile == SpotProfile::kCones ? angular * angular : angular);
-    }
-    return {to_light, distance, intensity * strength};
+    return {{x, y, z}, distance, strength, intensity * strength};
 }
 
 // Mean ambient radiance around `direction`; `softness` 0 (a mirror's sharp horizon) to 1 (diffuse).

@@ -1,6 +1,5 @@
-// The lobes of the shading models. Each gives the radiance that leaves towards the viewer per unit
-// of irradiance on a surface facing the light (reflectance times cosine), and the radiance under
-// ambient light. To add a lobe: a struct here and its place in the two functions at the end.
+// The lobes of the shading models: what leaves towards the viewer of the light that arrives from one
+// direction, and of ambient light. shade.h sums them over the lights.
 #pragma once
 
 #include "shading/light.h"
@@ -20,12 +19,17 @@ struct Incidence {
 // Exponents up to this that are whole numbers are powers by multiplication.
 inline constexpr float kLargestWholeExponent = 1024.0f;
 
+// Out of line, so that loops over whole exponents keep their numbers in registers.
+template <class F>
+TESSERA_COLD F power_by_logarithm(F x, float exponent) {
+    return math::pow(x, F(exponent));
+}
+
 template <class F>
 TESSERA_INLINE F power_cosine(F cosine, float exponent) {
     const F x = max(cosine, F(0.0f));
-    if (!(exponent >= 1.0f && exponent <= kLargestWholeExponent)) return math::pow(x, F(exponent));
-    const int whole = static_cast<int>(exponent);
-    if (static_cast<float>(whole) != exponent) return math::pow(x, F(exponent));
+    const int whole = exponent >= 1.0f && exponent <= kLargestWholeExponent ? static_cast<int>(exponent) : 0;
+    if (static_cast<float>(whole) != exponent || whole == 0) return power_by_logarithm(x, exponent);
     // From the highest bit down (Knuth, The Art of Computer Programming, section 4.6.3).
     F power = x;
     for (int bit = 30 - __builtin_clz(static_cast<unsigned>(whole)); bit >= 0; --bit) {
@@ -35,33 +39,29 @@ TESSERA_INLINE F power_cosine(F cosine, float exponent) {
     return power;
 }
 
-// kd (l.n): Lambert's cosine law with I_l = irradiance / pi.
-struct LambertLobe {
-    template <class F>
-    static TESSERA_INLINE Vec3T<F> reflect(const MaterialView& m, const LobeParameters<F>& p, const Incidence<F>& i) {
-        return Vec3T<F>::load(m.diffuse) * p.base * (max(i.n_l, F(0.0f)) * F(kInversePi));
-    }
-};
-
-// ks (v.r)^ns with r = 2 (n.l) n - l (Phong 1975); nothing where n.l <= 0.
-struct PhongLobe {
-    template <class F>
-    static TESSERA_INLINE Vec3T<F> reflect(const MaterialView& m, const LobeParameters<F>& p, const Incidence<F>& i) {
-        const Vec3T<F> r = p.normal * (F(2.0f) * i.n_l) - i.to_light;
-        const F s = power_cosine(dot(p.view, r), m.shininess) * F(kInversePi);
-        return Vec3T<F>::load(m.specular) * select(i.n_l > F(0.0f), s, F(0.0f));
-    }
-};
-
-// ks (n.h)^ns with h = (l + v) / |l + v| (Blinn 1977); nothing where n.l <= 0.
-struct BlinnPhongLobe {
-    template <class F>
-    static TESSERA_INLINE Vec3T<F> reflect(const MaterialView& m, const LobeParameters<F>& p, const Incidence<F>& i) {
-        const Vec3T<F> h = normalize_or(i.to_light + p.view, p.normal);
-        const F s = power_cosine(dot(p.normal, h), m.shininess) * F(kInversePi);
-        return Vec3T<F>::load(m.specular) * select(i.n_l > F(0.0f), s, F(0.0f));
-    }
-};
+// The textbooks' terms, to be weighed by I_l = irradiance / pi: kd (l.n), Lambert's cosine law, and a highlight,
+// which is nothing where n.l <= 0.
+template <class F>
+TESSERA_INLINE F lambert_cosine(const Incidence<F>& i) {
+    return max(i.n_l, F(0.0f));
+}
+// ks (v.r)^ns with r = 2 (n.l) n - l (Phong 1975).
+template <class F>
+TESSERA_INLINE F phong_highlight(const MaterialView& m, const LobeParameters<F>& p, const Incidence<F>& i) {
+    const F v_r = F(2.0f) * i.n_l * p.n_v - dot(p.view, i.to_light);
+    return select(i.n_l > F(0.0f), power_cosine(v_r, m.shininess), F(0.0f));
+}
+// ks (n.h)^ns with h = (l + v) / |l + v| (Blinn 1977).
+template <class F>
+TESSERA_INLINE F blinn_phong_highlight(const MaterialView& m, const LobeParameters<F>& p, const Incidence<F>& i) {
+    const Vec3T<F> h = i.to_light + p.view;
+    const F n_h = (i.n_l + p.n_v) / sqrt(max(dot(h, h), F(1e-12f)));
+    return select(i.n_l > F(0.0f), power_cosine(n_h, m.shininess), F(0.0f));
+}
+template <class F>
+TESSERA_INLINE F highlight(const MaterialView& m, const LobeParameters<F>& p, const Incidence<F>& i) {
+    return m.model == ShadingModel::kPhong ? phong_highlight(m, p, i) : blinn_phong_highlight(m, p, i);
+}
 
 // glTF 2.0 metallic-roughness (specification, appendix B): Lambert under a GGX microfacet layer with
 // the height-correlated Smith term (Heitz 2014) and Schlick's Fresnel.
@@ -99,7 +99,7 @@ struct MetallicRoughnessLobe {
     template <class F>
     static TESSERA_INLINE Vec3T<F> reflect(const LobeParameters<F>& p, const Incidence<F>& i) {
         const Vec3T<F> h = normalize_or(i.to_light + p.view, p.normal);
-        const F n_l = max(i.n_l, F(0.0f)), n_v = max(dot(p.normal, p.view), F(1e-4f));
+        const F n_l = max(i.n_l, F(0.0f)), n_v = max(p.n_v, F(1e-4f));
         const F n_h = saturate(dot(p.normal, h)), v_h = saturate(dot(p.view, h));
         const F rough = max(p.roughness, F(kSmallestRoughness));
         const F a = rough * rough, a2 = a * a;
@@ -123,52 +123,17 @@ struct MetallicRoughnessLobe {
     // Based Shading on Mobile", 2014).
     template <class F>
     static TESSERA_INLINE Vec3T<F> reflect_ambient(const LobeParameters<F>& p, const AmbientView& ambient) {
-        const F n_v = saturate(dot(p.normal, p.view));
+        const F n_v = saturate(p.n_v);
         const F rx = F(1.0f) - p.roughness, ry = F(0.0425f) - F(0.0275f) * p.roughness;
         const F a004 = min(rx * rx, math::exp2(F(-9.28f) * n_v)) * rx + ry;
         const F scale = F(1.04f) - F(0.572f) * p.roughness - F(1.04f) * a004;
         const F bias = F(0.022f) * p.roughness - F(0.04f) + F(1.04f) * a004;
         const Vec3T<F> fit = f0(p) * scale + Vec3T<F>::splat(max(bias, F(0.0f)));
         const Vec3T<F> albedo{min(fit.x, F(1.0f)), min(fit.y, F(1.0f)), min(fit.z, F(1.0f))};
-        const Vec3T<F> mirrored = p.normal * (F(2.0f) * dot(p.normal, p.view)) - p.view;
+        const Vec3T<F> mirrored = p.normal * (F(2.0f) * p.n_v) - p.view;
         return albedo * ambient_radiance(ambient, mirrored, p.roughness) +
                (Vec3T<F>::splat(F(1.0f)) - albedo) * diffuse_color(p) * ambient_radiance(ambient, p.normal, F(1.0f));
     }
 };
-
-// --- the list ---------------------------------------------------------------------------------
-
-template <class F>
-TESSERA_INLINE Vec3T<F> reflect_light(const MaterialView& m, const LobeParameters<F>& p, const Incidence<F>& i) {
-    switch (m.model) {
-        case ShadingModel::kLambert:
-            return LambertLobe::reflect(m, p, i);
-        case ShadingModel::kPhong:
-            return LambertLobe::reflect(m, p, i) + PhongLobe::reflect(m, p, i);
-        case ShadingModel::kBlinnPhong:
-            return LambertLobe::reflect(m, p, i) + BlinnPhongLobe::reflect(m, p, i);
-        case ShadingModel::kMetallicRoughness:
-            return MetallicRoughnessLobe::reflect(p, i);
-        case ShadingModel::kUnlit:
-            break;
-    }
-    return Vec3T<F>::splat(F(0.0f));
-}
-
-// The textbooks' Ia ka for the Phong models, whose Ia is the ambient radiance around the normal.
-template <class F>
-TESSERA_INLINE Vec3T<F> reflect_ambient(const MaterialView& m, const LobeParameters<F>& p, const AmbientView& ambient) {
-    switch (m.model) {
-        case ShadingModel::kLambert:
-        case ShadingModel::kPhong:
-        case ShadingModel::kBlinnPhong:
-            return Vec3T<F>::load(m.ambient) * p.base * ambient_radiance(ambient, p.normal, F(1.0f));
-        case ShadingModel::kMetallicRoughness:
-            return MetallicRoughnessLobe::reflect_ambient(p, ambient);
-        case ShadingModel::kUnlit:
-            break;
-    }
-    return Vec3T<F>::splat(F(0.0f));
-}
 
 }  // namespace tessera

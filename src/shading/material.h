@@ -65,6 +65,7 @@ TESSERA_INLINE F coverage_of_alpha(const MaterialView& m, F alpha) {
 template <class F>
 struct LobeParameters {
     Vec3T<F> normal, view;  // unit; the view direction points to the eye
+    F n_v;                  // their cosine, not clamped
     Vec3T<F> base;          // base colour, or the factor on ka and kd
     Vec3T<F> emission;
     F alpha, metallic, roughness, occlusion;
@@ -81,26 +82,33 @@ TESSERA_INLINE Vec3T<F> shading_normal(const MaterialView& m, const SurfacePoint
     return normalize_or((s.tangent * x + s.bitangent * y) * s.side + s.normal * z, s.normal);
 }
 
+// Normal, view and their cosine, which is all that the textbooks' highlights read.
 template <bool kTextured = true, class F>
-TESSERA_INLINE LobeParameters<F> evaluate_material(const MaterialView& m, const SurfacePoint<F>& s,
-                                                   const Vec3T<F>& view) {
-    LobeParameters<F> p;
+TESSERA_INLINE void set_directions(const MaterialView& m, const SurfacePoint<F>& s, LobeParameters<F>& p) {
+    p.normal = shading_normal<kTextured>(m, s);
+    p.view = {s.view.x, s.view.y, s.view.z};  // number by number: g++ copies a whole Vec3T through memory
+    p.n_v = dot(p.normal, p.view);
+}
+
+// What all lit models read besides: colour, emission and occlusion.
+template <bool kTextured = true, class F>
+TESSERA_INLINE void set_colors(const MaterialView& m, const SurfacePoint<F>& s, LobeParameters<F>& p) {
     const Vec4T<F> base = base_color<kTextured>(m, s);
     p.base = base.xyz();
     p.alpha = coverage_of_alpha(m, base.w);
-    p.view = view;
-    p.normal = shading_normal<kTextured>(m, s);
     p.emission = Vec3T<F>::load(m.emission) * read_input<kTextured>(m, TextureSlot::kEmissive, s).xyz();
-    p.metallic = F(0.0f);
-    p.roughness = F(1.0f);
-    if (m.model == ShadingModel::kMetallicRoughness) {
-        const Vec4T<F> mr = read_input<kTextured>(m, TextureSlot::kMetallicRoughness, s);
-        p.metallic = saturate(F(m.metallic) * mr.z);
-        p.roughness = saturate(F(m.roughness) * mr.y);
+    p.occlusion = F(1.0f);
+    if (kTextured) {
+        const F occlusion = read_input(m, TextureSlot::kOcclusion, s).x;
+        p.occlusion = F(1.0f) + F(m.occlusion_strength) * (occlusion - F(1.0f));
     }
-    const F occlusion = read_input<kTextured>(m, TextureSlot::kOcclusion, s).x;
-    p.occlusion = F(1.0f) + F(m.occlusion_strength) * (occlusion - F(1.0f));
-    return p;
+}
+
+template <bool kTextured = true, class F>
+TESSERA_INLINE void set_microfacets(const MaterialView& m, const SurfacePoint<F>& s, LobeParameters<F>& p) {
+    const Vec4T<F> mr = read_input<kTextured>(m, TextureSlot::kMetallicRoughness, s);
+    p.metallic = saturate(F(m.metallic) * mr.z);
+    p.roughness = saturate(F(m.roughness) * mr.y);
 }
 
 }  // namespace tessera

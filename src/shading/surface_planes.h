@@ -63,8 +63,8 @@ TESSERA_INLINE SurfaceLayout surface_layout(const MeshView& mesh, const Material
     return l;
 }
 
-// Camera-space directions through picture positions: (x, y, -1) with perspective, times the distance
-// along the axis a position; without, the position's x and y themselves.
+// Camera-space directions from picture positions to the eye: (x, y, 1) with perspective, minus the
+// distance along the axis times that a position; without, the position's x and y with the sign turned.
 struct PictureRays {
     float x_scale, x_offset, y_scale, y_offset;  // on positions in 1/256 pixel
     bool orthographic;
@@ -74,10 +74,10 @@ struct PictureRays {
         const double mx = static_cast<double>(m[0]), my = static_cast<double>(m[5]);
         const double left = orthographic ? -1.0 - static_cast<double>(m[3]) : -1.0 + static_cast<double>(m[2]);
         const double top = orthographic ? 1.0 - static_cast<double>(m[7]) : 1.0 + static_cast<double>(m[6]);
-        x_scale = static_cast<float>(2.0 / (256.0 * static_cast<double>(p.width) * mx));
-        x_offset = static_cast<float>(left / mx);
-        y_scale = static_cast<float>(-2.0 / (256.0 * static_cast<double>(p.height) * my));
-        y_offset = static_cast<float>(top / my);
+        x_scale = static_cast<float>(-2.0 / (256.0 * static_cast<double>(p.width) * mx));
+        x_offset = static_cast<float>(-left / mx);
+        y_scale = static_cast<float>(2.0 / (256.0 * static_cast<double>(p.height) * my));
+        y_offset = static_cast<float>(-top / my);
     }
 };
 
@@ -206,14 +206,17 @@ TESSERA_INLINE SurfacePoint<F> surface_point(const SurfaceLayout& l, const Pictu
     SurfacePoint<F> s;
     const F zero(0.0f), one(1.0f);
     const Vec3T<F> none = Vec3T<F>::splat(zero), toward_eye{zero, zero, one};
-    // A sample beside a sliver of a triangle may lie beyond its horizon.
-    const auto usable = v[0] > F(1e-30f);
-    const F w = one / select(usable, v[0], one);
-    const F ray_x = x * F(rays.x_scale) + F(rays.x_offset), ray_y = y * F(rays.y_scale) + F(rays.y_offset);
-    if (l.depth >= 0)
-        s.position = {ray_x, ray_y, -v[l.depth] * w};
-    else
-        s.position = {ray_x * w, ray_y * w, -w};
+    // A sample beside a sliver of a triangle may lie beyond its horizon: farther than all that is drawn.
+    const F minus_w = F(-1.0f) / max(v[0], F(1.0f / kLargestCoordinate)), w = -minus_w;
+    const F eye_x = x * F(rays.x_scale) + F(rays.x_offset), eye_y = y * F(rays.y_scale) + F(rays.y_offset);
+    if (l.depth >= 0) {
+        s.position = {-eye_x, -eye_y, v[l.depth] * minus_w};
+        s.view = toward_eye;
+    } else {
+        s.position = {eye_x * minus_w, eye_y * minus_w, minus_w};
+        const F inverse = one / sqrt(eye_x * eye_x + eye_y * eye_y + one);
+        s.view = {eye_x * inverse, eye_y * inverse, inverse};
+    }
     s.side = side;
     s.geometric_normal = s.tangent = s.bitangent = none;
     s.normal =

@@ -18,6 +18,7 @@ struct Corner {
 template <class F>
 struct SurfacePoint {
     Vec3T<F> position;
+    Vec3T<F> view;  // unit, towards the eye or the origin of the ray
     // Unit, on the viewer's side for two-sided surfaces. The geometric normal is set where a ray
     // starts from the point.
     Vec3T<F> geometric_normal, normal;
@@ -74,13 +75,15 @@ TESSERA_INLINE void set_tangent_frame(SurfacePoint<F>& s, const Vec3T<F>& n, con
 }
 
 // The surface point of a ray's hit anywhere on a triangle, from its barycentrics (primary visibility
-// goes through surface_planes.h). `front` is +1 where the ray sees the front. `footprint_scale` shrinks
-// the pixel's footprint to that of a sample.
+// goes through surface_planes.h). `view` is the unit direction against the ray, `front` is +1 where the
+// ray sees the front. `footprint_scale` shrinks the pixel's footprint to that of a sample.
 template <class F>
 TESSERA_INLINE SurfacePoint<F> surface_point(const InstanceView& instance, const Corner<F> (&c)[3],
-                                             const Barycentrics<F>& bary, F front, float footprint_scale) {
+                                             const Barycentrics<F>& bary, const Vec3T<F>& view, F front,
+                                             float footprint_scale) {
     const auto& b = bary.b;
     SurfacePoint<F> s;
+    s.view = view;
     s.side = front;
     const Vec3T<F> position = c[0].position * b[0] + c[1].position * b[1] + c[2].position * b[2];
     s.position = transform_point(instance.object_to_camera, position);

@@ -36,11 +36,11 @@ inline constexpr ChainStage kChainStages[] = {
     {"position and normals", 9, true},
     {"tangent frame", 6, true},
     {"uv and footprint", 12, true},
-    {"lobe parameters", 13, true},
+    {"lobe parameters", 14, true},
     {"radiance", 3, true},
     {"alpha", 1, true},
     {"film", 12, false},
-    {"point of a ray's hit", 16, true},
+    {"point of a ray's hit", 19, true},
 };
 // The first plane of a stage's results; of the end where there is no such stage.
 constexpr int chain_plane(std::string_view stage) {

@@ -56,8 +56,10 @@ TESSERA_INLINE void put_hit(const ChainJob& job, const Corner<Float> (&corners)[
         b.ddx[i] = b.b[i] - b.b[(i + 1) % 3];
         b.ddy[i] = b.b[i] - b.b[(i + 2) % 3];
     }
-    const SurfacePoint<Float> s = surface_point(*job.instance, corners, b, Float(-1.0f), job.context->footprint_scale);
+    const SurfacePoint<Float> s =
+        surface_point(*job.instance, corners, b, {x, y, b.b[0]}, Float(-1.0f), job.context->footprint_scale);
     out.put(s.position);
+    out.put(s.view);
     out.put(s.geometric_normal);
     out.put(s.normal);
     out.put(s.tangent);
@@ -128,9 +130,13 @@ void shade_batch(const ChainJob& job, int first) {
         out.put(s.footprint[k].uy);
         out.put(s.footprint[k].vy);
     }
-    const LobeParameters<Float> p = evaluate_material(*job.material, s, view_direction(*job.context, s.position));
+    LobeParameters<Float> p;
+    set_directions(*job.material, s, p);
+    set_colors(*job.material, s, p);
+    set_microfacets(*job.material, s, p);
     out.put(p.normal);
     out.put(p.view);
+    out.put(p.n_v);
     out.put(p.base);
     out.put(p.alpha);
     out.put(p.metallic);

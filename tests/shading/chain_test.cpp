@@ -118,7 +118,7 @@ class World {
     }
 
     InstanceView& instance() { return instance_; }
-    void make_orthographic() { context_.orthographic = projection_.orthographic = true; }
+    void make_orthographic() { projection_.orthographic = true; }
 
     std::vector<std::uint32_t> run(const ChainTable& table, const MaterialView& m, const std::vector<float>& planes) {
         constexpr std::size_t kMargin = 19;

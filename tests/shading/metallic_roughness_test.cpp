@@ -22,6 +22,7 @@ LobeParameters<float> parameters(const Vec3T<float>& normal, const Vec3T<float>&
     LobeParameters<float> p{};
     p.normal = normal;
     p.view = view;
+    p.n_v = dot(normal, view);
     p.base = base;
     p.metallic = metallic;
     p.roughness = roughness;
@@ -224,14 +225,15 @@ TEST(LIT4_WhiteFurnace, AmbientHighlightApproximatesTheIntegral) {
 }
 
 TEST(LIT4_WhiteFurnace, LambertReturnsAll) {
-    MaterialView m = test::plain_material(ShadingModel::kLambert);
-    const LobeParameters<float> p = parameters({0, 0, 1}, {0, 0, 1}, {1, 1, 1}, 0, 1);
+    const MaterialView m = test::plain_material(ShadingModel::kLambert);
+    const SurfacePoint<float> point = test::plain_point({0, 0, -1}, {0, 0, 1});
     double sum = 0;
     constexpr int kRings = 400;
     for (int i = 0; i < kRings; ++i) {  // rings of equal solid angle
         const float cosine = (static_cast<float>(i) + 0.5f) / kRings;
         const Vec3T<float> l = view_at(static_cast<double>(cosine));
-        sum += static_cast<double>(reflect_light(m, p, Incidence<float>{l, l.z}).x) * 2 *
+        const std::vector<LightView> lights{test::directional_light(l, 1)};
+        sum += static_cast<double>(test::shade_unshadowed(test::plain_context(lights), m, point).radiance.x) * 2 *
                static_cast<double>(test::kRealPi) / kRings;
     }
     EXPECT_NEAR(sum, 1, 1e-4);

@@ -55,7 +55,7 @@ Piece make_piece(test::Random& random, bool mirrored) {
 }
 
 SurfacePoint<float> point_of(const Piece& p, float front) {
-    return surface_point(p.instance, p.corners, p.bary, front, 1.0f);
+    return surface_point(p.instance, p.corners, p.bary, {0, 0, 1}, front, 1.0f);
 }
 
 TEST(TEX6_Frame, OrthonormalAtEveryPoint) {

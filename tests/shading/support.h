@@ -79,6 +79,7 @@ inline MaterialView plain_material(ShadingModel model) {
 inline SurfacePoint<float> plain_point(const Vec3T<float>& position, const Vec3T<float>& normal) {
     SurfacePoint<float> s{};
     s.position = position;
+    s.view = normalize_or(-position, {0, 0, 1});
     s.geometric_normal = s.normal = normal;
     s.side = 1;
     s.color = {1, 1, 1, 1};
