@@ -5,6 +5,7 @@
 
 #include "shading/light.h"
 #include "shading/material.h"
+#include "simd/math.h"
 
 namespace tessera {
 
