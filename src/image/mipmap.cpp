@@ -67,9 +67,10 @@ std::vector<float> halve_rows(int width, int height, Row&& row) {
     return out;
 }
 
+// Of 0 .. 1. Means may be off by a rounding, which is less than half a step.
 template <class V>
 std::int16_t fixed15(V v) {
-    return static_cast<std::int16_t>(clamp(v, V(0), V(1)) * V(kTexelOne) + V(0.5));
+    return static_cast<std::int16_t>(v * V(kTexelOne) + V(0.5));
 }
 
 // What each code of a channel stands for, rounded once: as a float for filtering, and as a texel has it.
@@ -87,44 +88,40 @@ struct ChannelTable {
     }
 };
 
-// The rows of an image, decoded when asked for.
+// The rows of an image, decoded when asked for: as floats, four a pixel, and into the first level of the chain.
 class RowDecoder {
   public:
-    RowDecoder(const Image& image, bool srgb)
+    RowDecoder(const Image& image, bool srgb, MipChain& chain)
         : image_(image),
+          chain_(chain),
           wide_(image.format() == PixelFormat::kRgba16),
           color_(wide_ ? 65536 : 256, srgb),
           alpha_(wide_ ? 65536 : 256, false),
           row_(4 * static_cast<std::size_t>(image.width())) {}
 
-    // Four floats a pixel. The last row is kept, because odd heights ask twice.
+    // The last row is kept, because odd heights ask twice.
     const float* operator()(int y) {
-        if (y != y_) decode(y, color_.linear, alpha_.linear, [this](std::size_t i, float v) { row_[i] = v; });
+        if (y != y_) wide_ ? decode<std::uint16_t>(y) : decode<std::uint8_t>(y);
         y_ = y;
         return row_.data();
     }
-    void store(int y, Texel* to) const {
-        decode(y, color_.fixed, alpha_.fixed, [to](std::size_t i, std::int16_t v) { to[i / 4].c[i % 4] = v; });
-    }
 
   private:
-    // put(number of the channel in the row, its value)
-    template <class Table, class Put>
-    void decode(int y, const Table& color, const Table& alpha, const Put& put) const {
-        const std::size_t count = row_.size(), first = static_cast<std::size_t>(y) * count;
-        const auto all = [&](const auto* in) {
-            for (std::size_t i = 0; i < count; i += 4) {
-                for (std::size_t c = 0; c < 3; ++c) put(i + c, color[in[i + c]]);
-                put(i + 3, alpha[in[i + 3]]);
-            }
-        };
-        if (wide_)
-            all(image_.data<std::uint16_t>() + first);
-        else
-            all(image_.data<std::uint8_t>() + first);
+    template <class Code>
+    void decode(int y) {
+        const Code* in = image_.data<Code>() + static_cast<std::size_t>(y) * row_.size();
+        const float *color = color_.linear.data(), *alpha = alpha_.linear.data();
+        const std::int16_t *color15 = color_.fixed.data(), *alpha15 = alpha_.fixed.data();
+        float* row = row_.data();
+        Texel* to = &chain_.texels[chain_.levels[0].index(0, y)];
+        for (int x = 0; x < image_.width(); ++x, in += 4, row += 4, ++to) {
+            row[0] = color[in[0]], row[1] = color[in[1]], row[2] = color[in[2]], row[3] = alpha[in[3]];
+            *to = {{color15[in[0]], color15[in[1]], color15[in[2]], alpha15[in[3]]}};
+        }
     }
 
     const Image& image_;
+    MipChain& chain_;
     bool wide_;
     ChannelTable color_, alpha_;
     std::vector<float> row_;
@@ -135,7 +132,7 @@ class RowDecoder {
 void store_row(const float* pixels, const MipLevel& level, int y, std::span<Texel> texels) {
     Texel* to = &texels[level.index(0, y)];
     for (int x = 0; x < level.width; ++x, ++to, pixels += 4)
-        *to = {{fixed15(pixels[0]), fixed15(pixels[1]), fixed15(pixels[2]), fixed15(pixels[3])}};
+        for (int c = 0; c < 4; ++c) to->c[c] = fixed15(pixels[c]);
 }
 
 // Lookups count texels in 32 bits. All levels together are less than twice the largest level there is.
@@ -176,9 +173,8 @@ MipChain make_mip_chain(const Image& image, bool srgb) {
     if (image.empty() || (image.format() != PixelFormat::kRgba8 && image.format() != PixelFormat::kRgba16))
         throw Error(ErrorCode::kUsage, "a texture must be an 8-bit or 16-bit RGBA image");
     MipChain chain = empty_mip_chain(image.width(), image.height());
-    RowDecoder rows(image, srgb);
-    for (int y = 0; y < image.height(); ++y) rows.store(y, &chain.texels[chain.levels[0].index(0, y)]);
-
+    RowDecoder rows(image, srgb, chain);
+    if (chain.levels.size() == 1) rows(0);
     std::vector<float> pixels;
     for (std::size_t i = 1; i < chain.levels.size(); ++i) {
         const MipLevel &from = chain.levels[i - 1], &to = chain.levels[i];

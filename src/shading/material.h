@@ -38,7 +38,7 @@ TESSERA_INLINE Vec4T<F> read_input(const MaterialView& m, TextureSlot slot, cons
     const TextureInput& in = m.input(slot);
     if (!kTextured || !in.texture) return {F(1.0f), F(1.0f), F(1.0f), F(1.0f)};
     const float* r = in.transform;
-    // Not by index, which would keep all sets of every point in memory.
+    // By comparison: an index would make the compiler read every set from memory.
     Vec2T<F> uv = s.uv[0];
     Footprint<F> d = s.footprint[0];
     for (int set = 1; set < kMaxUvSets; ++set) {

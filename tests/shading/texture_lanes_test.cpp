@@ -23,17 +23,22 @@ enum class Points { kNear, kBorders, kOdd };
 // texels and levels. `kOdd`: what no file should hold, among others.
 std::vector<float> make_points(test::Random& random, Points kind, int width, int height) {
     constexpr float kInfinity = std::numeric_limits<float>::infinity();
-    static constexpr float kOdd[] = {0.0f, -0.0f, 1.0f, -1.0f, 1e-42f, -1e-30f, 1e9f, -3e9f, 3e38f, 0.99999994f, 16384,
-                                     -8388607.5f, kInfinity, -kInfinity, std::numeric_limits<float>::quiet_NaN()};
+    static constexpr float kOdd[] = {
+        0.0f,    -0.0f,       1.0f,      -1.0f,      1e-42f,
+        -1e-30f, 1e9f,        -3e9f,     3e38f,      0.99999994f,
+        16384,   -8388607.5f, kInfinity, -kInfinity, std::numeric_limits<float>::quiet_NaN()};
     std::vector<float> in(std::size_t{kLookupInputs} * kCount);
     const auto w = static_cast<float>(width), h = static_cast<float>(height);
     float u = 0, v = 0, size = 1;
     for (std::size_t i = 0; i < kCount; ++i) {
         if (i % 32 == 0) u = random.in(-2, 3), v = random.in(-2, 3), size = std::exp2(random.in(-4, 12));
         const float turn = random.in(0, 0.1f);
-        float point[kLookupInputs] = {
-            u + static_cast<float>(i % 8) * size / w, v + static_cast<float>(i / 8 % 4) * size / h,
-            size * std::cos(turn) / w, size * std::sin(turn) / h, -size * std::sin(turn) / w, size * std::cos(turn) / h};
+        float point[kLookupInputs] = {u + static_cast<float>(i % 8) * size / w,
+                                      v + static_cast<float>(i / 8 % 4) * size / h,
+                                      size * std::cos(turn) / w,
+                                      size * std::sin(turn) / h,
+                                      -size * std::sin(turn) / w,
+                                      size * std::cos(turn) / h};
         if (kind == Points::kBorders) {
             const auto near = [&](float x) {
                 const std::uint32_t step = random.below(3);
@@ -62,7 +67,8 @@ class TextureLanesTest : public testing::TestWithParam<Isa> {
 
 TEST_P(TextureLanesTest, TEX1_EveryWrapAndFilterHasTheBitsOfOneLane) {
     test::Random random(41);
-    for (const auto& [w, h, levels] : {std::array{1, 1, 1}, {4, 4, 3}, {7, 3, 3}, {1, 9, 4}, {64, 32, 7}, {100, 99, 7}}) {
+    for (const auto& [w, h, levels] :
+         {std::array{1, 1, 1}, {4, 4, 3}, {7, 3, 3}, {1, 9, 4}, {64, 32, 7}, {100, 99, 7}}) {
         test::TestTexture source(w, h, levels, static_cast<std::uint32_t>(w));
         // A copy of the texels, all of them or as far as the levels go, that ends where memory ends.
         TextureView view = source.view();
@@ -88,8 +94,7 @@ TEST_P(TextureLanesTest, TEX1_EveryWrapAndFilterHasTheBitsOfOneLane) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Shading, TextureLanesTest,
-                         testing::Values(Isa::kScalar, Isa::kSse4, Isa::kAvx2, Isa::kAvx512),
+INSTANTIATE_TEST_SUITE_P(Shading, TextureLanesTest, testing::Values(Isa::kScalar, Isa::kSse4, Isa::kAvx2, Isa::kAvx512),
                          [](const auto& instance) { return std::string(name(instance.param)); });
 
 }  // namespace

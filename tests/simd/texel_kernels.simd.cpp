@@ -18,14 +18,14 @@ TESSERA_INLINE void put_channels(T texel, float* planes) {
 void filter(const Texel* lower, const Texel* upper, const std::int32_t* first, const std::int32_t* stride,
             const std::int32_t* across, const std::int32_t* down, const std::int32_t* between, float* planes) {
     const Int i = load<Int>(first), s = load<Int>(stride), x = load<Int>(across), y = load<Int>(down);
-    put_channels(
-        mix_texels(load_bilinear(lower, i, s, x, y), load_bilinear(upper, i, s, x, y), load<Int>(between)), planes);
+    put_channels(mix_texels(load_bilinear(lower, i, s, x, y), load_bilinear(upper, i, s, x, y), load<Int>(between)),
+                 planes);
 }
 
 void load_one(const Texel* texels, const std::int32_t* first, const std::int32_t* stride, const std::int32_t* across,
               const std::int32_t* down, float* planes) {
-    put_channels(
-        load_bilinear(texels, load<Int>(first), load<Int>(stride), load<Int>(across), load<Int>(down)), planes);
+    put_channels(load_bilinear(texels, load<Int>(first), load<Int>(stride), load<Int>(across), load<Int>(down)),
+                 planes);
 }
 
 void lookup_floats(const float* table, const std::int32_t* index, float* out) {
