@@ -215,7 +215,7 @@ TEST(TEX1_Filter, EveryFilterIsItsDefinition) {
             const Footprint<float> d{size * std::cos(turn) / fw, size * std::sin(turn) / fh,
                                      -size * thin * std::sin(turn) / fw, size * thin * std::cos(turn) / fh};
             const auto length = [&](float x, float y) {
-                return std::hypot(static_cast<Real>(x) * w, static_cast<Real>(y) * h);
+                return std::hypot(static_cast<Real>(x) * t.width(0), static_cast<Real>(y) * t.height(0));
             };
             const Real lod = std::log2(std::fmax(length(d.ux, d.vx), length(d.uy, d.vy)));
             const Real level = std::clamp<Real>(lod, 0, levels - 1);
