@@ -1,13 +1,12 @@
 #include "image/mipmap.h"
 
 #include "image/color.h"
-#include "image/srgb.h"
 
 #include <tessera/error.h>
 
 #include <algorithm>
 #include <array>
-#include <bit>
+#include <cstdint>
 
 namespace tessera {
 namespace {
@@ -37,7 +36,7 @@ Taps taps(int side, int i) {
 // call. Rows are asked for in ascending order, some twice. Columns of a row are summed first, from the
 // top down, then the pixels of the result, from the left.
 template <class Row>
-std::vector<float> halve_rows(int width, int height, const Row& row) {
+std::vector<float> halve_rows(int width, int height, Row&& row) {
     const int out_width = half(width), out_height = half(height);
     std::vector<float> out(4 * static_cast<std::size_t>(out_width) * static_cast<std::size_t>(out_height));
     const std::size_t channels = 4 * static_cast<std::size_t>(width);
@@ -68,86 +67,76 @@ std::vector<float> halve_rows(int width, int height, const Row& row) {
     return out;
 }
 
-struct ByteTables {
-    std::array<float, 256> linear{};
-    ByteTables() {
-        for (std::size_t i = 0; i < 256; ++i) linear[i] = static_cast<float>(i) / 255;
+// Of 0 .. 1. Means may be off by a rounding, which is less than half a step.
+template <class V>
+std::int16_t fixed15(V v) {
+    return static_cast<std::int16_t>(v * V(kTexelOne) + V(0.5));
+}
+
+// What each code of a channel stands for, rounded once: as a float for filtering, and as a texel has it.
+struct ChannelTable {
+    std::vector<float> linear;
+    std::vector<std::int16_t> fixed;
+
+    ChannelTable(std::size_t codes, bool srgb) : linear(codes), fixed(codes) {
+        for (std::size_t i = 0; i < codes; ++i) {
+            const double v = static_cast<double>(i) / static_cast<double>(codes - 1);
+            const double light = srgb ? linear_from_srgb(v) : v;
+            linear[i] = static_cast<float>(light);
+            fixed[i] = fixed15(light);
+        }
     }
 };
 
-// Rows of an image as floats, decoded when asked for; the last one is kept, because odd heights ask twice.
+// The rows of an image, decoded when asked for: as floats, four a pixel, and into the first level of the chain.
 class RowDecoder {
   public:
-    RowDecoder(const Image& image, bool srgb)
+    RowDecoder(const Image& image, bool srgb, MipChain& chain)
         : image_(image),
-          row_(4 * static_cast<std::size_t>(image.width())),
-          wide_(image.format() == PixelFormat::kRgba16) {
-        if (wide_) {
-            wide_color_.resize(65536);
-            for (std::size_t i = 0; i < wide_color_.size(); ++i) {
-                const double v = static_cast<double>(i) / 65535;
-                wide_color_[i] = static_cast<float>(srgb ? linear_from_srgb(v) : v);
-            }
-        }
-        color_ = srgb ? kSrgbTables.linear : bytes_.linear.data();
-    }
+          chain_(chain),
+          wide_(image.format() == PixelFormat::kRgba16),
+          color_(wide_ ? 65536 : 256, srgb),
+          alpha_(wide_ ? 65536 : 256, false),
+          row_(4 * static_cast<std::size_t>(image.width())) {}
 
+    // The last row is kept, because odd heights ask twice.
     const float* operator()(int y) {
-        if (y == y_) return row_.data();
+        if (y != y_) wide_ ? decode<std::uint16_t>(y) : decode<std::uint8_t>(y);
         y_ = y;
-        const std::size_t first = static_cast<std::size_t>(y) * row_.size();
-        if (wide_) {
-            const auto* in = image_.data<std::uint16_t>() + first;
-            for (std::size_t i = 0; i < row_.size(); i += 4) {
-                for (std::size_t c = 0; c < 3; ++c) row_[i + c] = wide_color_[in[i + c]];
-                row_[i + 3] = static_cast<float>(in[i + 3]) / 65535;
-            }
-        } else {
-            const auto* in = image_.data<std::uint8_t>() + first;
-            for (std::size_t i = 0; i < row_.size(); i += 4) {
-                for (std::size_t c = 0; c < 3; ++c) row_[i + c] = color_[in[i + c]];
-                row_[i + 3] = bytes_.linear[in[i + 3]];
-            }
-        }
         return row_.data();
     }
 
   private:
+    template <class Code>
+    void decode(int y) {
+        const Code* in = image_.data<Code>() + static_cast<std::size_t>(y) * row_.size();
+        const float *color = color_.linear.data(), *alpha = alpha_.linear.data();
+        const std::int16_t *color15 = color_.fixed.data(), *alpha15 = alpha_.fixed.data();
+        float* row = row_.data();
+        Texel* to = &chain_.texels[chain_.levels[0].index(0, y)];
+        for (int x = 0; x < image_.width(); ++x, in += 4, row += 4, ++to) {
+            row[0] = color[in[0]], row[1] = color[in[1]], row[2] = color[in[2]], row[3] = alpha[in[3]];
+            *to = {{color15[in[0]], color15[in[1]], color15[in[2]], alpha15[in[3]]}};
+        }
+    }
+
     const Image& image_;
-    std::vector<float> row_, wide_color_;
-    ByteTables bytes_;
-    const float* color_ = nullptr;
-    int y_ = -1;
+    MipChain& chain_;
     bool wide_;
+    ChannelTable color_, alpha_;
+    std::vector<float> row_;
+    int y_ = -1;
 };
 
-std::uint32_t byte_of(float v) { return static_cast<std::uint32_t>(clamp(v, 0.0f, 1.0f) * 255 + 0.5f); }
-
-void encode(std::span<const float> pixels, bool srgb, std::uint32_t* to) {
-    for (std::size_t i = 0; i < pixels.size(); i += 4) {
-        std::uint32_t texel = byte_of(pixels[i + 3]) << 24;
-        for (std::size_t c = 0; c < 3; ++c)
-            texel |= (srgb ? static_cast<std::uint32_t>(srgb8_from_linear(pixels[i + c])) : byte_of(pixels[i + c]))
-                     << (8 * c);
-        *to++ = texel;
-    }
+// Row y of a level from as many times four floats.
+void store_row(const float* pixels, const MipLevel& level, int y, std::span<Texel> texels) {
+    Texel* to = &texels[level.index(0, y)];
+    for (int x = 0; x < level.width; ++x, ++to, pixels += 4)
+        for (int c = 0; c < 4; ++c) to->c[c] = fixed15(pixels[c]);
 }
 
-// The image itself: bytes as they are, 16-bit values to the nearest byte.
-void copy_base(const Image& image, std::uint32_t* to) {
-    const std::size_t count = image.bytes().size() / bytes_per_pixel(image.format());
-    const auto* bytes = image.data<std::uint8_t>();
-    const auto* words = image.data<std::uint16_t>();
-    const bool wide = image.format() == PixelFormat::kRgba16;
-    for (std::size_t i = 0; i < count; ++i) {
-        std::uint32_t texel = 0;
-        for (std::size_t c = 0; c < 4; ++c) {
-            const std::uint32_t v = wide ? (words[4 * i + c] * 255u + 32767u) / 65535u : bytes[4 * i + c];
-            texel |= v << (8 * c);
-        }
-        to[i] = texel;
-    }
-}
+// Lookups count texels in 32 bits. All levels together are less than twice the largest level there is.
+static_assert(2ll * (kMaxImageSide + 2) * (kMaxImageSide + 2) < INT32_MAX);
 
 }  // namespace
 
@@ -156,30 +145,45 @@ std::vector<float> halve(std::span<const float> pixels, int width, int height) {
     return halve_rows(width, height, [&](int y) { return pixels.data() + static_cast<std::size_t>(y) * stride; });
 }
 
-MipChain make_mip_chain(const Image& image, bool srgb) {
-    if (image.empty() || (image.format() != PixelFormat::kRgba8 && image.format() != PixelFormat::kRgba16))
-        throw Error(ErrorCode::kUsage, "a texture must be an 8-bit or 16-bit RGBA image");
+MipChain empty_mip_chain(int width, int height) {
     MipChain chain;
     std::size_t total = 0;
-    for (int w = image.width(), h = image.height();; w = half(w), h = half(h)) {
-        chain.levels.push_back({total, w, h});
-        total += static_cast<std::size_t>(w) * static_cast<std::size_t>(h);
+    for (int w = width, h = height;; w = half(w), h = half(h)) {
+        const MipLevel& level = chain.levels.emplace_back(MipLevel{total, w, h});
+        total = level.index(w, h) + 1;
         if (w == 1 && h == 1) break;
     }
     chain.texels.resize(total);
-    copy_base(image, chain.texels.data());
+    return chain;
+}
 
+void wrap_border(const MipLevel& level, std::span<Texel> texels) {
+    for (int y = 0; y < level.height; ++y) {
+        texels[level.index(-1, y)] = texels[level.index(level.width - 1, y)];
+        texels[level.index(level.width, y)] = texels[level.index(0, y)];
+    }
+    const auto copy_row = [&](int from, int to) {
+        std::copy_n(&texels[level.index(-1, from)], level.stride(), &texels[level.index(-1, to)]);
+    };
+    copy_row(level.height - 1, -1);
+    copy_row(0, level.height);
+}
+
+MipChain make_mip_chain(const Image& image, bool srgb) {
+    if (image.empty() || (image.format() != PixelFormat::kRgba8 && image.format() != PixelFormat::kRgba16))
+        throw Error(ErrorCode::kUsage, "a texture must be an 8-bit or 16-bit RGBA image");
+    MipChain chain = empty_mip_chain(image.width(), image.height());
+    RowDecoder rows(image, srgb, chain);
+    if (chain.levels.size() == 1) rows(0);
     std::vector<float> pixels;
     for (std::size_t i = 1; i < chain.levels.size(); ++i) {
-        const MipLevel& from = chain.levels[i - 1];
-        if (i == 1) {
-            RowDecoder rows(image, srgb);
-            pixels = halve_rows(from.width, from.height, [&](int y) { return rows(y); });
-        } else {
-            pixels = halve(pixels, from.width, from.height);
-        }
-        encode(pixels, srgb, &chain.texels[chain.levels[i].offset]);
+        const MipLevel &from = chain.levels[i - 1], &to = chain.levels[i];
+        pixels = i == 1 ? halve_rows(from.width, from.height, rows) : halve(pixels, from.width, from.height);
+        for (int y = 0; y < to.height; ++y)
+            store_row(&pixels[4 * static_cast<std::size_t>(y) * static_cast<std::size_t>(to.width)], to, y,
+                      chain.texels);
     }
+    for (const MipLevel& level : chain.levels) wrap_border(level, chain.texels);
     return chain;
 }
 

@@ -1,29 +1,45 @@
-// Mip chains of textures: RGBA8 texels of all levels in one array, each level half the one before
-// (rounded down) to 1 x 1. Filtered in linear light, from floats that are not rounded in between, by
-// the exact box filter, also for odd sizes. Colours are averaged without regard to alpha: glTF stores
-// straight alpha, the level then does not depend on the alpha mode, and data textures are not colours.
+// Mip chains of textures: linear texels in 15-bit fixed point, all levels in one array, each level half
+// the one before (rounded down) to 1 x 1. Filtered in linear light, from floats that are rounded only for
+// storing, by the exact box filter, also for odd sizes. Colours are averaged without regard to alpha: glTF
+// stores straight alpha, the level then does not depend on the alpha mode, and data textures are not colours.
+// Around each level lies a border of one texel, which repeats the opposite edge, so that two neighbours in a
+// row or a column never need wrapping.
 #pragma once
 
 #include <tessera/image.h>
 
-#include <cstdint>
+#include "simd/texels.h"
+
+#include <cstddef>
 #include <span>
 #include <vector>
 
 namespace tessera {
 
 struct MipLevel {
-    std::size_t offset = 0;  // of its first texel
-    int width = 0, height = 0;
+    std::size_t offset = 0;     // of its border's top left corner
+    int width = 0, height = 0;  // without the border
+
+    int stride() const { return width + 2; }  // from row to row
+    // Of texel x, y of the level, from -1 (the border) to width, height.
+    std::size_t index(int x, int y) const {
+        return offset + static_cast<std::size_t>(y + 1) * static_cast<std::size_t>(stride()) +
+               static_cast<std::size_t>(x + 1);
+    }
 };
 
 struct MipChain {
-    std::vector<std::uint32_t> texels;  // R in the low byte, then G, B, A; row by row from the top left
-    std::vector<MipLevel> levels;       // the first one is the image itself
+    std::vector<Texel> texels;     // row by row from the top left
+    std::vector<MipLevel> levels;  // the first one is the image itself
 };
 
-// From kRgba8 or kRgba16 (kUsage otherwise). `srgb`: the colour channels are sRGB-encoded, and stay so
-// in every level; alpha, and every channel of data textures, is linear.
+// All levels of a chain, of zeros.
+MipChain empty_mip_chain(int width, int height);
+// Makes the border of a level from its texels.
+void wrap_border(const MipLevel& level, std::span<Texel> texels);
+
+// From kRgba8 or kRgba16 (kUsage otherwise). `srgb`: the colour channels are sRGB-encoded; alpha, and every
+// channel of data textures, is linear.
 MipChain make_mip_chain(const Image& image, bool srgb);
 
 // One step of the chain: `width` x `height` pixels of four floats to max(1, width / 2) x

@@ -3,6 +3,7 @@
 #include "geometry/texture_transform.h"
 #include "render/lighting.h"
 #include "render/options.h"
+#include "shading/texture_view.h"
 #include "simd/math.h"
 
 #include <algorithm>
@@ -41,25 +42,6 @@ MaterialView convert(const Material& m) {
     copy3(m.diffuse, 1, v.diffuse);
     copy3(m.specular, 1, v.specular);
     v.shininess = m.shininess;
-    return v;
-}
-
-TextureView make_view(const MipChain& chain, const Sampler& sampler, bool srgb) {
-    TextureView v{};
-    v.texels = chain.texels.data();
-    v.levels = std::min(static_cast<int>(chain.levels.size()), kMaxMipLevels);
-    for (int i = 0; i < v.levels; ++i) {
-        const MipLevel& level = chain.levels[static_cast<std::size_t>(i)];
-        v.offset[i] = static_cast<std::int32_t>(level.offset);
-        v.width[i] = level.width;
-        v.height[i] = level.height;
-    }
-    v.srgb = srgb;
-    v.mag_linear = sampler.mag_filter == Filter::kLinear;
-    v.min_linear = sampler.min_filter == Filter::kLinear;
-    v.mip = sampler.mip_filter;
-    v.wrap_s = sampler.wrap_s;
-    v.wrap_t = sampler.wrap_t;
     return v;
 }
 
@@ -109,7 +91,7 @@ ShadingScene::ShadingScene(const Scene& scene, const std::vector<bool>& used, Ar
         const Texture& texture = scene.textures[static_cast<std::size_t>(index)];
         const Sampler sampler =
             texture.sampler == kNone ? Sampler{} : scene.samplers[static_cast<std::size_t>(texture.sampler)];
-        textures_.push_back(make_view(chains_[chain_of.at({texture.picture, srgb})], sampler, srgb));
+        textures_.push_back(texture_view(chains_[chain_of.at({texture.picture, srgb})], sampler));
     }
     for (std::size_t m = 0; m < scene.materials.size(); ++m)
         for (std::size_t slot = 0; slot < kTextureSlots; ++slot) {

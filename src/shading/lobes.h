@@ -4,6 +4,7 @@
 
 #include "shading/light.h"
 #include "shading/material.h"
+#include "simd/math.h"
 
 namespace tessera {
 

@@ -38,8 +38,14 @@ TESSERA_INLINE Vec4T<F> read_input(const MaterialView& m, TextureSlot slot, cons
     const TextureInput& in = m.input(slot);
     if (!kTextured || !in.texture) return {F(1.0f), F(1.0f), F(1.0f), F(1.0f)};
     const float* r = in.transform;
-    const Vec2T<F>& uv = s.uv[in.uv_set];
-    const Footprint<F>& d = s.footprint[in.uv_set];
+    // By comparison: an index would make the compiler read every set from memory.
+    Vec2T<F> uv = s.uv[0];
+    Footprint<F> d = s.footprint[0];
+    for (int set = 1; set < kMaxUvSets; ++set) {
+        if (in.uv_set != set) continue;
+        uv = s.uv[set];
+        d = s.footprint[set];
+    }
     const Footprint<F> footprint{d.ux * F(r[0]) + d.vx * F(r[1]), d.ux * F(r[3]) + d.vx * F(r[4]),
                                  d.uy * F(r[0]) + d.vy * F(r[1]), d.uy * F(r[3]) + d.vy * F(r[4])};
     return sample_texture(*in.texture, uv.x * F(r[0]) + uv.y * F(r[1]) + F(r[2]),

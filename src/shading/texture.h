@@ -1,12 +1,13 @@
-// Texture lookup over the number type: wrap modes, nearest, bilinear and trilinear filters. Texels
-// are RGBA8, four bytes a texel, mip levels one after the other; sRGB texels are decoded to linear
-// light before they are weighted. Coordinates: u to the right, v down, (0, 0) the top left corner.
+// Texture lookup over the number type: wrap modes, nearest, bilinear and trilinear filters. Texels are
+// linear, in 15-bit fixed point (simd/texels.h), and so are positions between texels and mip levels.
+// Every level has a border of one texel, the opposite edge's: the four texels of a lookup are always two
+// neighbours in each of two rows, one stride apart. Coordinates: u to the right, v down, (0, 0) the top left corner.
 #pragma once
 
 #include <tessera/shading_model.h>
 
 #include "shading/vectors.h"
-#include "simd/math.h"
+#include "simd/texels.h"
 
 #include <cstdint>
 
@@ -14,100 +15,83 @@ namespace tessera {
 
 inline constexpr int kMaxMipLevels = 15;  // 16384 and down to 1
 
+// Positions within a texture count 1/32768 texel.
+inline constexpr std::int32_t kTexelStep = 1 << kWeightBits;
+
 // A texture ready to sample: plain data; the texels belong to somebody else.
 struct TextureView {
-    const std::uint32_t* texels = nullptr;
-    std::int32_t offset[kMaxMipLevels] = {};  // of each level in texels
-    std::int32_t width[kMaxMipLevels] = {};
-    std::int32_t height[kMaxMipLevels] = {};
+    const Texel* texels = nullptr;
+    // By level. The last level's numbers are repeated behind it, so the next level is always one on.
+    std::int32_t offset[kMaxMipLevels + 1] = {};                          // of the border's corner in texels
+    std::int32_t stride[kMaxMipLevels + 1] = {};                          // of a row, in texels
+    float width[kMaxMipLevels + 1] = {}, height[kMaxMipLevels + 1] = {};  // in 1/32768 texel, without the border
     std::int32_t levels = 0;
-    bool srgb = false;
     bool mag_linear = true, min_linear = true;
     MipFilter mip = MipFilter::kLinear;
     Wrap wrap_s = Wrap::kRepeat, wrap_t = Wrap::kRepeat;
 };
 
-// The sRGB decoding curve for 8-bit texels as a polynomial (no table, so vectors need no gathers):
-// exact at 1 and below 0.04045, else a minimax polynomial in c - 1 of degree 6 (Sollya, fpminimax),
-// absolute error below 6.1e-6, a fiftieth of the distance between neighbouring codes where they are
-// closest.
-template <class F>
-TESSERA_INLINE F texel_to_linear(F c) {
-    const F d = c - F(1.0f);
-    F p = F(-5.348674952983856201171875e-2f);
-    p = p * d + F(-9.7075544297695159912109375e-2f);
-    p = p * d + F(-0.115236751735210418701171875f);
-    p = p * d + F(0.15634374320507049560546875f);
-    p = p * d + F(1.50344860553741455078125f);
-    p = p * d + F(2.2745449542999267578125f);
-    return select(c <= F(0.04045f), c * F(1.0f / 12.92f), p * d + F(1.0f));
-}
-
-// Brings a coordinate into [0, 1]. What is not finite becomes 0.
+// Brings a coordinate into [0, 1]. NaN becomes 0, and so do infinities unless they are clamped.
 template <class F>
 TESSERA_INLINE F wrap_coordinate(F t, Wrap mode) {
-    t = select(abs(t) < F(1e9f), t, F(0.0f));
-    if (mode == Wrap::kRepeat) return t - floor(t);
+    const F zero(0.0f);
+    if (mode == Wrap::kRepeat) return max(t - floor(t), zero);
     if (mode == Wrap::kMirror) {
         const F twice = t - F(2.0f) * floor(t * F(0.5f));
-        return select(twice > F(1.0f), F(2.0f) - twice, twice);
+        return max(min(twice, F(2.0f) - twice), zero);
     }
     return saturate(t);
 }
 
-// Texel index next to the border, -1 .. size, brought into 0 .. size - 1.
-template <class I>
-TESSERA_INLINE I wrap_index(I i, I size, Wrap mode) {
-    const I last = size - I(1);
-    if (mode == Wrap::kRepeat) return select(i < I(0), last, select(i > last, I(0), i));
-    return min(max(i, I(0)), last);
-}
-
+// Where among a level's texels, border included, a coordinate of [0, 1] falls: the first of two
+// neighbours, and the weight of the second.
 template <class F>
-TESSERA_INLINE Vec4T<F> fetch_texel(const TextureView& t, IntOf<F> index) {
-    const auto rgba = gather(t.texels, index);
-    using U = UintOf<F>;
-    const F scale(1.0f / 255.0f);
-    Vec4T<F> c{to_float(as_int(rgba & U(255u))) * scale, to_float(as_int((rgba >> 8) & U(255u))) * scale,
-               to_float(as_int((rgba >> 16) & U(255u))) * scale, to_float(as_int(rgba >> 24)) * scale};
-    if (t.srgb) {
-        c.x = texel_to_linear(c.x);
-        c.y = texel_to_linear(c.y);
-        c.z = texel_to_linear(c.z);
-    }
-    return c;
-}
-
-// Entry `level` of a table by level, which most often is one for all lanes.
+struct TexelPosition {
+    IntOf<F> first, weight;
+};
+// `size` in 1/32768 texel; `linear` are the lanes that are filtered, the others take the texel that
+// holds the point.
 template <class F>
-TESSERA_INLINE IntOf<F> of_level(const std::int32_t* table, IntOf<F> level, std::int32_t first, bool same) {
-    return same ? IntOf<F>(table[first]) : gather(table, level);
-}
-
-// One level; u and v already within [0, 1].
-template <class F>
-TESSERA_INLINE Vec4T<F> sample_level(const TextureView& t, F u, F v, IntOf<F> level, bool linear) {
+TESSERA_INLINE TexelPosition<F> texel_position(F t, F size, Wrap mode, bool all_linear, const MaskOf<F>& linear) {
     using I = IntOf<F>;
-    const std::int32_t first = lane(level, 0);
-    const bool same = all(level == I(first));
-    const I width = of_level<F>(t.width, level, first, same), height = of_level<F>(t.height, level, first, same),
-            offset = of_level<F>(t.offset, level, first, same);
-    const F x = u * to_float(width), y = v * to_float(height);
-    if (!linear) {
-        const I xi = wrap_index(truncate_int(floor(x)), width, Wrap::kClamp);
-        const I yi = wrap_index(truncate_int(floor(y)), height, Wrap::kClamp);
-        return fetch_texel<F>(t, offset + yi * width + xi);
+    const F step(static_cast<float>(kTexelStep));
+    const F at = t * size;
+    // Texel i lies at i + 1 behind the border, and its centre half a texel further on.
+    F middle = at + F(0.5f) * step;
+    if (mode != Wrap::kRepeat) middle = min(max(middle, step), size);
+    I position = nearest_int(middle);
+    if (!all_linear) {
+        const I texel = truncate_int(min(at, size - step)) & I(-kTexelStep);
+        position = select(linear, position, texel + I(kTexelStep));
     }
-    const F x0 = floor(x - F(0.5f)), y0 = floor(y - F(0.5f));
-    const F fx = x - F(0.5f) - x0, fy = y - F(0.5f) - y0;
-    const I left = truncate_int(x0), top = truncate_int(y0);
-    const I xl = wrap_index(left, width, t.wrap_s), xr = wrap_index(left + I(1), width, t.wrap_s);
-    const I row0 = offset + wrap_index(top, height, t.wrap_t) * width;
-    const I row1 = offset + wrap_index(top + I(1), height, t.wrap_t) * width;
-    const Vec4T<F> a = fetch_texel<F>(t, row0 + xl), b = fetch_texel<F>(t, row0 + xr);
-    const Vec4T<F> c = fetch_texel<F>(t, row1 + xl), d = fetch_texel<F>(t, row1 + xr);
-    return {mix1(mix1(a.x, b.x, fx), mix1(c.x, d.x, fx), fy), mix1(mix1(a.y, b.y, fx), mix1(c.y, d.y, fx), fy),
-            mix1(mix1(a.z, b.z, fx), mix1(c.z, d.z, fx), fy), mix1(mix1(a.w, b.w, fx), mix1(c.w, d.w, fx), fy)};
+    return {position >> kWeightBits, position & I(kTexelStep - 1)};
+}
+
+// How a lookup filters within a level.
+template <class F>
+struct LevelFilter {
+    bool all_linear;
+    MaskOf<F> linear;
+};
+
+// The four texels of a lookup in one level, and their weights.
+template <class F>
+struct TexelCorners {
+    IntOf<F> first, stride, across, down;
+
+    // A Texel of each lane.
+    TESSERA_INLINE auto load(const Texel* texels) const { return load_bilinear(texels, first, stride, across, down); }
+};
+// u and v already within [0, 1].
+template <class F>
+TESSERA_INLINE TexelCorners<F> texel_corners(const TextureView& t, F u, F v, const IntOf<F>& level,
+                                             const LevelFilter<F>& filter) {
+    const TexelPosition<F> x =
+        texel_position<F>(u, lookup16(t.width, level), t.wrap_s, filter.all_linear, filter.linear);
+    const TexelPosition<F> y =
+        texel_position<F>(v, lookup16(t.height, level), t.wrap_t, filter.all_linear, filter.linear);
+    const IntOf<F> stride = lookup16(t.stride, level);
+    return {lookup16(t.offset, level) + y.first * stride + x.first, stride, x.weight, y.weight};
 }
 
 // The footprint of a pixel in uv: change of (u, v) per step right and down.
@@ -116,14 +100,43 @@ struct Footprint {
     F ux, vx, uy, vy;
 };
 
-// The level of detail: log2 of the footprint's longer side in texels of level 0 (Williams 1983;
-// the larger of the two axes as in the OpenGL 4.6 specification, section 8.14.1).
+// Square of the footprint's longer side in texels of level 0 (Williams 1983; the larger of the two axes
+// as in the OpenGL 4.6 specification, section 8.14.1).
 template <class F>
-TESSERA_INLINE F level_of_detail(const TextureView& t, const Footprint<F>& d) {
-    const F w(static_cast<float>(t.width[0])), h(static_cast<float>(t.height[0]));
+TESSERA_INLINE F squared_footprint(const TextureView& t, const Footprint<F>& d) {
+    const F w(t.width[0] / static_cast<float>(kTexelStep)), h(t.height[0] / static_cast<float>(kTexelStep));
     const F xx = d.ux * w, xy = d.vx * h, yx = d.uy * w, yy = d.vy * h;
-    const F squared = max(xx * xx + xy * xy, yx * yx + yy * yy);
-    return F(0.5f) * math::log2(min(max(squared, F(1e-20f)), F(1e20f)));
+    return max(xx * xx + xy * xy, yx * yx + yy * yy);
+}
+
+// The level of detail, log2 of the footprint's longer side within 0 .. levels - 1.
+template <class F>
+struct LevelOfDetail {
+    UintOf<F> squared;  // bits of 2^(2 lod), from those of 1 on
+    // The level next to it.
+    TESSERA_INLINE IntOf<F> nearest() const { return as_int((squared + UintOf<F>(1u << 23)) >> 24); }
+    // The level at or below it.
+    TESSERA_INLINE IntOf<F> floor() const { return as_int(squared >> 24); }
+    // The weight of the level above that. The exponent's last bit and the mantissa m of 1 + m are twice the
+    // fraction of the level but for log2(1 + m) - m, here m (1 - m) q(m) with a minimax q of degree 3 (Remez):
+    // exact at powers of two, else within 1.6e-5, a quarter of a step of the weight.
+    TESSERA_INLINE IntOf<F> fraction() const {
+        using I = IntOf<F>;
+        const I bits = as_int(squared);
+        const F m = as_float((bits & I(0x7fffff)) | I(0x3f800000)) - F(1.0f);
+        F q = F(-0x1.71dc72p-5f);
+        q = q * m + F(0x1.2ffa54p-3f);
+        q = q * m + F(-0x1.11977cp-2f);
+        q = q * m + F(0x1.c485e6p-2f);
+        const F twice = to_float(bits & I(0xffffff)) * F(0x1p-23f) + m * (F(1.0f) - m) * q;
+        return min(nearest_int(twice * F(0.5f * static_cast<float>(kTexelStep))), I(kTexelStep - 1));
+    }
+};
+template <class F>
+TESSERA_INLINE LevelOfDetail<F> level_of_detail(F squared, std::int32_t levels) {
+    // max gives the second operand for NaN.
+    const F within = min(max(squared, F(1.0f)), F(static_cast<float>(1 << 2 * (levels - 1))));
+    return {as_uint(within) - UintOf<F>(0x3f800000u)};
 }
 
 template <class F>
@@ -131,31 +144,31 @@ TESSERA_INLINE Vec4T<F> sample_texture(const TextureView& t, F u, F v, const Foo
     using I = IntOf<F>;
     u = wrap_coordinate(u, t.wrap_s);
     v = wrap_coordinate(v, t.wrap_t);
-    const F lod = level_of_detail(t, d);
-    const auto magnified = lod <= F(0.0f);
+    const F squared = squared_footprint(t, d);
+    const auto minified = squared > F(1.0f);
+    LevelFilter<F> filter{t.mag_linear && t.min_linear, MaskOf<F>(true)};
+    if (!filter.all_linear) filter.linear = select(minified, MaskOf<F>(t.min_linear), MaskOf<F>(t.mag_linear));
+
+    // All positions before the first load, so that the loads of both levels need not wait for each other.
+    I weight(0);
+    TexelCorners<F> lower, upper;
     if (t.mip == MipFilter::kNone || t.levels == 1) {
-        if (t.mag_linear == t.min_linear) return sample_level(t, u, v, I(0), t.mag_linear);
-        const Vec4T<F> a = sample_level(t, u, v, I(0), true), b = sample_level(t, u, v, I(0), false);
-        const auto linear = t.mag_linear ? magnified : !magnified;
-        return {select(linear, a.x, b.x), select(linear, a.y, b.y), select(linear, a.z, b.z), select(linear, a.w, b.w)};
-    }
-    const F clamped = min(max(lod, F(0.0f)), F(static_cast<float>(t.levels - 1)));
-    Vec4T<F> c;
-    if (t.mip == MipFilter::kNearest) {
-        c = sample_level(t, u, v, truncate_int(floor(clamped + F(0.5f))), t.min_linear);
+        lower = texel_corners(t, u, v, I(0), filter);
     } else {
-        const F lower = floor(clamped);
-        const I level = truncate_int(lower);
-        const I next = min(level + I(1), I(t.levels - 1));
-        const Vec4T<F> a = sample_level(t, u, v, level, t.min_linear), b = sample_level(t, u, v, next, t.min_linear);
-        const F f = clamped - lower;
-        c = {mix1(a.x, b.x, f), mix1(a.y, b.y, f), mix1(a.z, b.z, f), mix1(a.w, b.w, f)};
+        const LevelOfDetail<F> lod = level_of_detail(squared, t.levels);
+        if (t.mip == MipFilter::kNearest) {
+            lower = texel_corners(t, u, v, lod.nearest(), filter);
+        } else {
+            const I level = lod.floor();
+            lower = texel_corners(t, u, v, level, filter);
+            upper = texel_corners(t, u, v, level + I(1), filter);
+            weight = lod.fraction();
+        }
     }
-    if (t.mag_linear != t.min_linear) {
-        const Vec4T<F> m = sample_level(t, u, v, I(0), t.mag_linear);
-        c = {select(magnified, m.x, c.x), select(magnified, m.y, c.y), select(magnified, m.z, c.z),
-             select(magnified, m.w, c.w)};
-    }
+    auto texel = lower.load(t.texels);
+    if (any(weight != I(0))) texel = mix_texels(texel, upper.load(t.texels), weight);
+    Vec4T<F> c;
+    channels(texel, c.x, c.y, c.z, c.w);
     return c;
 }
 

@@ -10,7 +10,7 @@
 
 #include <algorithm>
 #include <array>
-#include <cstring>
+#include <cmath>
 
 namespace tessera {
 namespace {
@@ -62,23 +62,77 @@ TEST(Mipmap, Tex1OddSizesAreExactAreaAverages) {
             }
 }
 
-TEST(Mipmap, Tex1LevelsHalveDownToOneTexel) {
+const Texel& texel(const MipChain& chain, std::size_t level, int x, int y) {
+    return chain.texels[chain.levels[level].index(x, y)];
+}
+
+TEST(Mipmap, Tex1LevelsHalveDownToOneTexelAndDoNotOverlap) {
     for (const auto& [w, h] : {std::pair{1, 1}, {1, 9}, {16, 1}, {37, 20}, {256, 256}}) {
-        const Image image = test::noise_picture(w, h);
-        const MipChain chain = make_mip_chain(image, true);
-        std::size_t offset = 0;
+        const MipChain chain = make_mip_chain(test::noise_picture(w, h), true);
+        std::size_t end = 0;
         int width = w, height = h;
         for (const MipLevel& level : chain.levels) {
-            EXPECT_EQ(level.offset, offset);
             EXPECT_EQ(level.width, width);
             EXPECT_EQ(level.height, height);
-            offset += static_cast<std::size_t>(width * height);
+            EXPECT_EQ(level.index(-1, -1), end);
+            for (int y = -1; y <= height; ++y)
+                for (int x = -1; x <= width; ++x) ASSERT_EQ(level.index(x, y), end++);
             width = std::max(1, width / 2);
             height = std::max(1, height / 2);
         }
         EXPECT_EQ(chain.levels.back().width * chain.levels.back().height, 1);
-        EXPECT_EQ(chain.texels.size(), offset);
-        EXPECT_EQ(std::memcmp(chain.texels.data(), image.bytes().data(), image.bytes().size()), 0);
+        EXPECT_EQ(chain.texels.size(), end);
+    }
+}
+
+TEST(Mipmap, Tex1TheBorderIsTheOppositeEdge) {
+    for (const auto& [w, h] : {std::pair{1, 1}, {5, 1}, {2, 7}, {12, 10}}) {
+        const MipChain chain = make_mip_chain(test::noise_picture(w, h), false);
+        for (std::size_t i = 0; i < chain.levels.size(); ++i) {
+            const int width = chain.levels[i].width, height = chain.levels[i].height;
+            for (int y = -1; y <= height; ++y)
+                for (int x = -1; x <= width; ++x)
+                    ASSERT_EQ(texel(chain, i, x, y), texel(chain, i, (x + width) % width, (y + height) % height));
+        }
+    }
+}
+
+// --- the format -----------------------------------------------------------------------------
+
+// A picture whose pixels are the codes from 0 on, the same in every channel.
+template <class T>
+Image all_codes(PixelFormat format, int width, int height) {
+    Image image(width, height, format);
+    for (std::size_t i = 0; i < image.bytes().size() / sizeof(T); ++i) image.data<T>()[i] = static_cast<T>(i / 4);
+    return image;
+}
+// The nearest of 0 .. 32767; no code lies halfway.
+int nearest15(double v) { return static_cast<int>(std::lround(v * 32767)); }
+
+TEST(Mipmap, Tex1EveryByteIsTheNearest15BitsAndComesBack) {
+    const Image image = all_codes<std::uint8_t>(PixelFormat::kRgba8, 16, 16);
+    const MipChain color = make_mip_chain(image, true), data = make_mip_chain(image, false);
+    for (int code = 0; code < 256; ++code) {
+        const Texel c = texel(color, 0, code % 16, code / 16), d = texel(data, 0, code % 16, code / 16);
+        for (int k = 0; k < 4; ++k) {
+            const double v = code / 255.0;
+            ASSERT_EQ(d.c[k], nearest15(v));
+            ASSERT_EQ(c.c[k], nearest15(k == 3 ? v : linear_from_srgb(v)));
+        }
+        ASSERT_EQ(srgb8_from_linear(static_cast<float>(c.c[0]) / 32767), code);
+        ASSERT_EQ(std::lround(d.c[0] * 255 / 32767.0), code);
+    }
+}
+
+TEST(Mipmap, Tex1EverySixteenBitValueIsTheNearest15Bits) {
+    const Image image = all_codes<std::uint16_t>(PixelFormat::kRgba16, 256, 256);
+    const MipChain color = make_mip_chain(image, true), data = make_mip_chain(image, false);
+    for (int code = 0; code < 65536; ++code) {
+        const Texel c = texel(color, 0, code % 256, code / 256), d = texel(data, 0, code % 256, code / 256);
+        const double v = code / 65535.0;
+        ASSERT_EQ(d.c[1], nearest15(v)) << code;
+        ASSERT_EQ(c.c[1], nearest15(linear_from_srgb(v))) << code;
+        ASSERT_EQ(c.c[3], d.c[3]);
     }
 }
 
@@ -88,16 +142,17 @@ TEST(Mipmap, Tex1ConstantImagesStayConstant) {
             const auto byte = static_cast<std::uint8_t>(v);
             const auto other = static_cast<std::uint8_t>(255 - v);
             const MipChain chain = make_mip_chain(test::flat_picture(23, 14, byte, other, 128, byte), srgb);
-            for (const std::uint32_t texel : chain.texels) ASSERT_EQ(texel, chain.texels[0]);
+            for (const Texel& t : chain.texels) ASSERT_EQ(t, chain.texels[0]);
         }
 }
 
 TEST(Mipmap, Tex1BlackAndWhiteAverageInLinearLight) {
     Image image = test::flat_picture(2, 2, 0, 0, 0, 0);
     for (std::size_t i = 0; i < 8; ++i) image.data<std::uint8_t>()[i] = 255;
-    // Half the light of white is code 188 (0.5 encoded), half of a number is 128; alpha is a number.
-    EXPECT_EQ(make_mip_chain(image, true).texels[4], 0x80bcbcbcu);
-    EXPECT_EQ(make_mip_chain(image, false).texels[4], 0x80808080u);
+    // Half the light of white, and half of a number, is 16383.5.
+    const Texel half{{16384, 16384, 16384, 16384}};
+    EXPECT_EQ(texel(make_mip_chain(image, true), 1, 0, 0), half);
+    EXPECT_EQ(texel(make_mip_chain(image, false), 1, 0, 0), half);
 }
 
 TEST(Mipmap, Tex1RoundingDoesNotAccumulate) {
@@ -109,10 +164,8 @@ TEST(Mipmap, Tex1RoundingDoesNotAccumulate) {
         const double v = image.data<std::uint8_t>()[i] / 255.0;
         sum[i % 4] += i % 4 == 3 ? v : linear_from_srgb(v);
     }
-    for (std::size_t c = 0; c < 3; ++c)
-        EXPECT_EQ(static_cast<int>(chain.texels.back() >> (8 * c) & 0xff),
-                  srgb8_from_linear(static_cast<float>(sum[c] / 65536)));
-    EXPECT_EQ(chain.texels.back() >> 24, static_cast<std::uint32_t>(sum[3] / 65536 * 255 + 0.5));
+    const Texel last = texel(chain, chain.levels.size() - 1, 0, 0);
+    for (std::size_t c = 0; c < 4; ++c) EXPECT_EQ(last.c[c], nearest15(sum[c] / 65536));
 }
 
 TEST(Mipmap, Tex1SixteenBitImagesFilterLikeTheirBytes) {

@@ -145,11 +145,9 @@ void KernelMesh::place_triangle(Random& random, Place place, std::uint32_t trian
 
 KernelWorld::KernelWorld(Random& random) {
     constexpr int kSizes[kTextureSlots][3] = {{64, 32, 7}, {1, 1, 1}, {37, 5, 6}, {16, 16, 5}, {128, 1, 8}};
-    for (std::size_t i = 0; i < kTextureSlots; ++i) {
+    for (std::size_t i = 0; i < kTextureSlots; ++i)
         textures_.push_back(
             std::make_unique<TestTexture>(kSizes[i][0], kSizes[i][1], kSizes[i][2], static_cast<std::uint32_t>(i + 1)));
-        textures_.back()->view().srgb = i % 2 == 0;
-    }
     constexpr ShadingModel kModels[] = {ShadingModel::kBlinnPhong, ShadingModel::kMetallicRoughness,
                                         ShadingModel::kUnlit, ShadingModel::kPhong};
     for (std::uint32_t i = 0; i < kMaterials; ++i) {

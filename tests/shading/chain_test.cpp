@@ -181,7 +181,6 @@ MaterialView textured(ShadingModel model, std::vector<std::unique_ptr<test::Test
     m.alpha_mode = AlphaMode::kBlend;
     for (std::size_t slot = 0; slot < kTextureSlots; ++slot) {
         TextureView& view = textures[slot]->view();
-        view.srgb = slot == 0 || slot + 1 == kTextureSlots;
         m.inputs[slot].texture = &view;
         m.inputs[slot].uv_set = static_cast<std::int32_t>(slot % kMaxUvSets);
         const float transform[6] = {0.9f, 0.2f, 0.1f, -0.3f, 1.1f, 0.4f};

@@ -123,11 +123,14 @@ TEST(TEX6_Frame, NormalsPointToTheViewer) {
 
 // --- maps -----------------------------------------------------------------------------------
 
+// The component of the normal that an 8-bit channel stands for, in the precision that texels have.
+Real component(int code) { return 2 * test::value15(test::channel15(code)) - 1; }
+
 class Map {
   public:
     Map() : texture_(1, 1, 1, 1) {}
     MaterialView material(int r, int g, int b) {
-        texture_.texel(0, 0, 0) = static_cast<std::uint32_t>(r | g << 8 | b << 16) | 0xff000000u;
+        texture_.set(0, 0, 0, {{test::channel15(r), test::channel15(g), test::channel15(b), 32767}});
         MaterialView m = test::plain_material(ShadingModel::kLambert);
         TextureInput& input = m.inputs[static_cast<int>(TextureSlot::kNormal)];
         input.texture = &texture_.view();
@@ -140,12 +143,13 @@ class Map {
     test::TestTexture texture_;
 };
 
-// 128 stands for 1/255: the flat texel tilts the normal by atan(sqrt(2) / 255), no more.
+// 128 stands for 1/255 or so: the flat texel tilts the normal by atan(sqrt(2) / 255), no more.
 TEST(TEX6_NormalMap, FlatTexelTiltsByItsQuantisationOnly) {
     test::Random random(35);
     Map map;
     const MaterialView m = map.material(128, 128, 255);
-    const Real tilt = std::atan(std::sqrt(2.0L) / 255);
+    const Real tilt = std::atan(std::sqrt(2.0L) * component(128));
+    ASSERT_NEAR(static_cast<double>(component(128)), 1 / 255.0, 1 / 32767.0);
     for (int i = 0; i < 2000; ++i) {
         const SurfacePoint<float> s = point_of(make_piece(random, i % 2), i % 3 ? 1.0f : -1.0f);
         const Real3 n(shading_normal(m, s));
@@ -164,7 +168,7 @@ TEST(TEX6_NormalMap, IsTheFramesCombinationAndTurnsOnBackFaces) {
         m.normal_scale = random.in(0, 2);
         const Piece p = make_piece(random, i % 2);
         const SurfacePoint<float> front = point_of(p, 1), back = point_of(p, -1);
-        const Real x = (r / 127.5L - 1) * m.normal_scale, y = (g / 127.5L - 1) * m.normal_scale, z = b / 127.5L - 1;
+        const Real x = component(r) * m.normal_scale, y = component(g) * m.normal_scale, z = component(b);
         const Real3 want = unit(Real3(front.tangent) * x + Real3(front.bitangent) * y + Real3(front.normal) * z);
         ASSERT_LT(distance(shading_normal(m, front), want), 2e-6L);
         ASSERT_LT(distance(shading_normal(m, back), want * -1), 2e-6L);
@@ -185,7 +189,7 @@ TEST(TEX6_NormalMap, LightInTangentSpaceGivesTheSamePicture) {
         const Real3 light(Vec3T<float>::load(lights[0].to_light));
         const Real3 local{inner(light, Real3(s.tangent)), inner(light, Real3(s.bitangent)),
                           inner(light, Real3(s.normal))};
-        const Real3 mapped = unit(Real3{r / 127.5L - 1, g / 127.5L - 1, b / 127.5L - 1});
+        const Real3 mapped = unit(Real3{component(r), component(g), component(b)});
         ASSERT_NEAR(got, static_cast<double>(std::fmax(inner(mapped, local), 0.0L)), 2e-6);
     }
 }

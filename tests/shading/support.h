@@ -3,12 +3,14 @@
 #pragma once
 
 #include "shading/shade.h"
+#include "shading/texture_view.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
 #include <random>
+#include <span>
 #include <vector>
 
 namespace tessera::test {
@@ -126,37 +128,67 @@ inline LightView point_light(const Vec3T<float>& position, float candela) {
     return l;
 }
 
-// Texels of all levels, each a number of its own, with guard texels before and behind.
+// The channel of a texel for the 8-bit value of a data texture.
+inline std::int16_t channel15(int code) { return static_cast<std::int16_t>(std::lround(code * 32767 / 255.0)); }
+inline Texel grey_texel(int code) {
+    const std::int16_t c = channel15(code);
+    return {{c, c, c, c}};
+}
+// What a stored channel stands for.
+inline Real value15(std::int16_t channel) { return channel / 32767.0L; }
+
+// Texels of `levels` levels, each a random number of its own; guard texels before, behind, and in place
+// of the levels that are left out.
 class TestTexture {
   public:
-    static constexpr std::uint32_t kGuard = 0xdeadbeefu;
+    static constexpr std::int16_t kGuard = 32767;
     static constexpr std::size_t kGuards = 64;
 
-    TestTexture(int width, int height, int levels, std::uint32_t seed) : texels_(kGuards, kGuard) {
-        std::mt19937 engine(seed);
-        for (int i = 0; i < levels; ++i) {
-            view_.offset[i] = static_cast<std::int32_t>(texels_.size() - kGuards);
-            view_.width[i] = std::max(1, width >> i);
-            view_.height[i] = std::max(1, height >> i);
-            for (int k = 0; k < view_.width[i] * view_.height[i]; ++k)
-                texels_.push_back(static_cast<std::uint32_t>(engine()));
-        }
-        texels_.insert(texels_.end(), kGuards, kGuard);
-        view_.levels = levels;
+    TestTexture(int width, int height, int levels, std::uint32_t seed)
+        : chain_(empty_mip_chain(width, height)),
+          texels_(chain_.texels.size() + 2 * kGuards, {{kGuard, kGuard, kGuard, kGuard}}) {
+        view_ = texture_view(chain_, {}, levels);
         view_.texels = texels_.data() + kGuards;
+        std::mt19937 engine(seed);
+        for (int i = 0; i < view_.levels; ++i) {
+            for (int y = 0; y < this->height(i); ++y)
+                for (int x = 0; x < this->width(i); ++x)
+                    for (std::int16_t& c : at(i, x, y).c) c = static_cast<std::int16_t>(engine() & 32767);
+            wrap_border(level(i), all());
+        }
     }
     TestTexture(const TestTexture&) = delete;
     TestTexture& operator=(const TestTexture&) = delete;
 
     TextureView& view() { return view_; }
-    std::uint32_t& texel(int level, int x, int y) {
-        return texels_[kGuards + static_cast<std::size_t>(view_.offset[level] + y * view_.width[level] + x)];
+    int width(int i) const { return level(i).width; }
+    int height(int i) const { return level(i).height; }
+    Texel texel(int i, int x, int y) { return at(i, x, y); }
+    // Channel (0 red .. 3 alpha) of a texel as 0 .. 1.
+    Real value(int i, int x, int y, int c) { return value15(at(i, x, y).c[c]); }
+    void set(int i, int x, int y, Texel texel) {
+        at(i, x, y) = texel;
+        wrap_border(level(i), all());
     }
-    // Channel (0 red .. 3 alpha) of a texel as 0 .. 255.
-    int channel(int level, int x, int y, int c) { return static_cast<int>(texel(level, x, y) >> (8 * c) & 255); }
+    void fill(int i, Texel texel) {
+        for (int y = 0; y < height(i); ++y)
+            for (int x = 0; x < width(i); ++x) at(i, x, y) = texel;
+        wrap_border(level(i), all());
+    }
+    // Guards in place of the border.
+    void spoil_border(int i) {
+        for (int y = -1; y <= height(i); ++y)
+            for (int x = -1; x <= width(i); ++x)
+                if (x < 0 || y < 0 || x == width(i) || y == height(i)) at(i, x, y) = {{kGuard, kGuard, kGuard, kGuard}};
+    }
 
   private:
-    std::vector<std::uint32_t> texels_;
+    const MipLevel& level(int i) const { return chain_.levels[static_cast<std::size_t>(i)]; }
+    std::span<Texel> all() { return std::span(texels_).subspan(kGuards, chain_.texels.size()); }
+    Texel& at(int i, int x, int y) { return texels_[kGuards + level(i).index(x, y)]; }
+
+    MipChain chain_;
+    std::vector<Texel> texels_;
     TextureView view_;
 };
 

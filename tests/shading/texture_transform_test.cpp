@@ -107,10 +107,7 @@ TEST(TEX1_UvSets, AMaterialReadsTheSetItNames) {
 // The transform moves the footprint too: a texture scaled by 4 is sampled two levels further down.
 TEST(TEX1_UvSets, ReadInputTransformsTheFootprintOfItsSet) {
     test::TestTexture texture(64, 64, 7, 1);
-    for (int level = 0; level < 7; ++level)
-        for (int y = 0; y < 64 >> level; ++y)
-            for (int x = 0; x < 64 >> level; ++x)
-                texture.texel(level, x, y) = 0x01010101u * static_cast<std::uint32_t>(20 * level);
+    for (int level = 0; level < 7; ++level) texture.fill(level, test::grey_texel(20 * level));
     MaterialView m = test::plain_material(ShadingModel::kMetallicRoughness);
     SurfacePoint<float> s = test::plain_point({0, 0, -1}, {0, 0, 1});
     s.footprint[2] = {1.0f / 64, 0, 0, 1.0f / 64};

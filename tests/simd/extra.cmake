@@ -1,5 +1,5 @@
 tessera_kernels(${target} ${CMAKE_CURRENT_SOURCE_DIR}/simd/operations.simd.cpp
-  ${CMAKE_CURRENT_SOURCE_DIR}/simd/record_kernels.simd.cpp)
+  ${CMAKE_CURRENT_SOURCE_DIR}/simd/record_kernels.simd.cpp ${CMAKE_CURRENT_SOURCE_DIR}/simd/texel_kernels.simd.cpp)
 
 # Sanitizers add weak symbols of their own.
 if(NOT TESSERA_SANITIZE AND NOT TESSERA_ISAS STREQUAL "scalar")
