@@ -1,0 +1,158 @@
+// The first stage of shading: from ordinals and picture positions to surface points, a block of 64 at a
+// time. The stages hand each other blocks, not vectors, so that several vectors of a stage are under way
+// while the square roots and divisions of one take their time. Part of a kernel file, once per
+// instruction set.
+#pragma once
+
+#include "raster/surface_kernel.h"
+
+namespace tessera::TESSERA_ISA_NAMESPACE {
+
+inline constexpr int kVectors = kBlockPixels / kLanes<Float>;  // of a block of points
+inline constexpr std::uint32_t kAllLanes = (1u << (kLanes<Float> - 1) << 1) - 1;
+
+// A block of a tile, or a part of a list, on its way through the stages.
+struct Points {
+    static constexpr int kNumbers = 3 * 5 + 1 + 4 + 6 * kMaxUvSets;
+
+    std::uint32_t used[kVectors];  // lanes that count
+    Uint ordinals[kVectors];
+    Float x[kVectors], y[kVectors];        // picture positions
+    Float surface[kVectors][kNumbers];     // as visit_numbers() orders them
+    Vec3T<Float> radiance[kVectors];
+    Float alpha[kVectors];
+};
+
+// What the points of a job share: copies, which no store can change.
+struct Batch {
+    const ShadeJob& job;
+    const ShadingContext context;
+    const MaterialView material;
+    const PictureRays rays;
+
+    explicit Batch(const ShadeJob& j)
+        : job(j), context(*j.source->shading), material(*j.material), rays(j.source->projection) {}
+};
+
+// visit(place, number) for what a layout makes of a surface point; all else in it is constant.
+template <class Point, class Visit>
+TESSERA_INLINE void visit_numbers(const SurfaceLayout& l, Point& s, Visit&& visit) {
+    int n = 0;
+    if (l.normal >= 0) {
+        visit(n++, s.position.x), visit(n++, s.position.y), visit(n++, s.position.z);
+        visit(n++, s.view.x), visit(n++, s.view.y), visit(n++, s.view.z);
+        visit(n++, s.normal.x), visit(n++, s.normal.y), visit(n++, s.normal.z);
+    }
+    if (l.tangent >= 0) {
+        visit(n++, s.tangent.x), visit(n++, s.tangent.y), visit(n++, s.tangent.z);
+        visit(n++, s.bitangent.x), visit(n++, s.bitangent.y), visit(n++, s.bitangent.z);
+        visit(n++, s.side);
+    }
+    if (l.color >= 0) visit(n++, s.color.x), visit(n++, s.color.y), visit(n++, s.color.z), visit(n++, s.color.w);
+    for (int set = 0; set < kMaxUvSets; ++set) {
+        if (l.uv[set] < 0) continue;
+        visit(n++, s.uv[set].x), visit(n++, s.uv[set].y);
+        visit(n++, s.footprint[set].ux), visit(n++, s.footprint[set].vx);
+        visit(n++, s.footprint[set].uy), visit(n++, s.footprint[set].vy);
+    }
+}
+
+TESSERA_INLINE SurfacePoint<Float> load_point(const SurfaceLayout& l, const Float* numbers) {
+    const Float zero(0.0f), one(1.0f);
+    SurfacePoint<Float> s;
+    s.position = s.geometric_normal = s.tangent = s.bitangent = {zero, zero, zero};
+    s.view = s.normal = {zero, zero, one};
+    s.side = one;
+    s.color = {one, one, one, one};
+    for (int set = 0; set < kMaxUvSets; ++set) {
+        s.uv[set] = {zero, zero};
+        s.footprint[set] = {zero, zero, zero, zero};
+    }
+    visit_numbers(l, s, [numbers](int n, Float& number) TESSERA_INLINE_LAMBDA { number = numbers[n]; });
+    return s;
+}
+
+// Triangles that a vector may show before its lanes fetch records of their own.
+inline constexpr int kFew = kLanes<Float> < 4 ? kLanes<Float> : 4;
+
+TESSERA_INLINE void blend_samples(const SurfaceLayout& l, Mask mask, const SurfaceSample<Float>& from,
+                                  SurfaceSample<Float>& to) {
+    for (int k = 0; k < l.count; ++k) to.value[k] = select(mask, from.value[k], to.value[k]);
+    to.inverse_w_ddx = select(mask, from.inverse_w_ddx, to.inverse_w_ddx);
+    to.inverse_w_ddy = select(mask, from.inverse_w_ddy, to.inverse_w_ddy);
+    for (int set = 0; set < kMaxUvSets; ++set) {
+        if (l.uv[set] < 0) continue;
+        const Footprint<Float>& a = from.uv_plane[set];
+        Footprint<Float>& b = to.uv_plane[set];
+        b = {select(mask, a.ux, b.ux), select(mask, a.vx, b.vx), select(mask, a.uy, b.uy), select(mask, a.vy, b.vy)};
+    }
+}
+
+// The sample of each lane's own triangle. `used` are the lanes that count, at least one.
+TESSERA_INLINE void sample_lanes(const ShadeJob& job, const SurfaceLayout& l, const Uint& ordinals, std::uint32_t used,
+                                 Float x, Float y, SurfaceSample<Float>& sample, Float& side, Float& sign) {
+    constexpr int kWidth = kLanes<Float>;
+    alignas(64) std::uint32_t ordinal[kWidth];
+    store(ordinal, ordinals);
+    const auto record_of = [&](int lane) { return job.records + job.record_of[ordinal[lane]]; };
+    const auto sample_of = [&](const float* record, SurfaceSample<Float>& out) {
+        sample_planes(
+            l, x, y, [record](int i) { return Float(record[i]); }, out);
+    };
+    // The few triangles that the lanes show, and who shows them.
+    int first[kFew] = {}, few = 0;
+    std::uint32_t rest = used;
+    Mask shows[kFew];
+    for (; few < kFew && rest; ++few) {
+        first[few] = __builtin_ctz(rest);
+        shows[few] = ordinals == Uint(ordinal[first[few]]);
+        rest &= ~mask_bits(shows[few]);
+    }
+    if (!rest) {
+        const float* record = record_of(first[0]);
+        sample_of(record, sample);
+        side = Float(record[2]);
+        sign = Float(record[3]);
+        for (int n = 1; n < few; ++n) {
+            record = record_of(first[n]);
+            SurfaceSample<Float> other;
+            sample_of(record, other);
+            blend_samples(l, shows[n], other, sample);
+            side = select(shows[n], Float(record[2]), side);
+            sign = select(shows[n], Float(record[3]), sign);
+        }
+        return;
+    }
+    Float numbers[kMaxSurfaceFloats];
+    const int floats = surface_floats(l);
+    const float* records[kWidth];
+    for (int lane = 0; lane < kWidth; ++lane) records[lane] = record_of(lane);
+    for (int i = 0; i < floats; i += 4)
+        load_records([&](int lane) { return records[lane] + i; }, numbers[i], numbers[i + 1], numbers[i + 2],
+                     numbers[i + 3]);
+    sample_planes(
+        l, x, y, [&numbers](int i) { return numbers[i]; }, sample);
+    side = numbers[2];
+    sign = numbers[3];
+}
+
+// From ordinals and positions to Points::surface.
+template <class Layout>
+__attribute__((noinline)) void find_surfaces(const Batch& batch, Points& points) {
+    const ShadeJob& job = batch.job;
+    const SurfaceLayout& l = Layout::layout(job);
+    const PictureRays rays = batch.rays;
+    const float footprint_scale = batch.context.footprint_scale;
+    for (int i = 0; i < kVectors; ++i) {
+        if (!points.used[i]) continue;
+        const Float x = points.x[i], y = points.y[i];
+        SurfaceSample<Float> sample;
+        Float side, sign;
+        sample_lanes(job, l, points.ordinals[i], points.used[i], x, y, sample, side, sign);
+        const SurfacePoint<Float> s = surface_point(l, rays, sample, x, y, side, sign, footprint_scale);
+        Float* const numbers = points.surface[i];
+        visit_numbers(l, s, [numbers](int n, const Float& number) TESSERA_INLINE_LAMBDA { numbers[n] = number; });
+    }
+}
+
+}  // namespace tessera::TESSERA_ISA_NAMESPACE
