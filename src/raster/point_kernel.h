@@ -13,14 +13,13 @@ inline constexpr std::uint32_t kAllLanes = (1u << (kLanes<Float> - 1) << 1) - 1;
 
 // A block of a tile, or a part of a list, on its way through the stages.
 struct Points {
-    static constexpr int kNumbers = 3 * 5 + 1 + 4 + 6 * kMaxUvSets;
+    static constexpr int kNumbers = 3 * 3 + 4 + 6 * kMaxUvSets;
 
     std::uint32_t used[kVectors];  // lanes that count
     Uint ordinals[kVectors];
-    Float x[kVectors], y[kVectors];        // picture positions
-    Float surface[kVectors][kNumbers];     // as visit_numbers() orders them
-    Vec3T<Float> radiance[kVectors];
-    Float alpha[kVectors];
+    Float x[kVectors], y[kVectors];     // picture positions
+    Float surface[kVectors][kNumbers];  // as visit_numbers() orders them
+    ShadedPoint<Float> shaded[kVectors];
 };
 
 // What the points of a job share: copies, which no store can change.
@@ -43,11 +42,6 @@ TESSERA_INLINE void visit_numbers(const SurfaceLayout& l, Point& s, Visit&& visi
         visit(n++, s.view.x), visit(n++, s.view.y), visit(n++, s.view.z);
         visit(n++, s.normal.x), visit(n++, s.normal.y), visit(n++, s.normal.z);
     }
-    if (l.tangent >= 0) {
-        visit(n++, s.tangent.x), visit(n++, s.tangent.y), visit(n++, s.tangent.z);
-        visit(n++, s.bitangent.x), visit(n++, s.bitangent.y), visit(n++, s.bitangent.z);
-        visit(n++, s.side);
-    }
     if (l.color >= 0) visit(n++, s.color.x), visit(n++, s.color.y), visit(n++, s.color.z), visit(n++, s.color.w);
     for (int set = 0; set < kMaxUvSets; ++set) {
         if (l.uv[set] < 0) continue;
@@ -57,6 +51,7 @@ TESSERA_INLINE void visit_numbers(const SurfaceLayout& l, Point& s, Visit&& visi
     }
 }
 
+// Without the geometry behind the normal, which shading does not read.
 TESSERA_INLINE SurfacePoint<Float> load_point(const SurfaceLayout& l, const Float* numbers) {
     const Float zero(0.0f), one(1.0f);
     SurfacePoint<Float> s;
@@ -149,7 +144,8 @@ __attribute__((noinline)) void find_surfaces(const Batch& batch, Points& points)
         SurfaceSample<Float> sample;
         Float side, sign;
         sample_lanes(job, l, points.ordinals[i], points.used[i], x, y, sample, side, sign);
-        const SurfacePoint<Float> s = surface_point(l, rays, sample, x, y, side, sign, footprint_scale);
+        SurfacePoint<Float> s = surface_point(l, rays, sample, x, y, side, sign, footprint_scale);
+        if (l.tangent >= 0) s.normal = shading_normal(batch.material, s);
         Float* const numbers = points.surface[i];
         visit_numbers(l, s, [numbers](int n, const Float& number) TESSERA_INLINE_LAMBDA { numbers[n] = number; });
     }

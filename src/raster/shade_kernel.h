@@ -7,20 +7,36 @@
 
 namespace tessera::TESSERA_ISA_NAMESPACE {
 
+// A block of points as a batch of shading.
+template <class Layout>
+struct BlockBatch {
+    static constexpr int kCount = kVectors;
+    static constexpr bool kColored = Layout::kColored;
+    const SurfaceLayout& layout;
+    const Points& points;
+
+    TESSERA_INLINE bool used(int k) const { return points.used[k] != 0; }
+    TESSERA_INLINE Vec3T<Float> position(int k) const { return three(k, 0); }
+    TESSERA_INLINE Vec3T<Float> view(int k) const { return three(k, 3); }
+    TESSERA_INLINE Vec3T<Float> normal(int k) const { return three(k, 6); }
+    TESSERA_INLINE SurfacePoint<Float> point(int k) const { return load_point(layout, points.surface[k]); }
+
+  private:
+    TESSERA_INLINE Vec3T<Float> three(int k, int n) const {
+        const Float* numbers = points.surface[k] + n;
+        return {numbers[0], numbers[1], numbers[2]};
+    }
+};
+
 // From Points::surface to radiance and alpha.
 template <class Layout, ShadingFamily kFamily, bool kTextured>
 __attribute__((noinline)) void shade_surfaces(const Batch& batch, Points& points) {
-    const SurfaceLayout& l = Layout::layout(batch.job);
+    // Copies, which no store can change.
     const ShadingContext context = batch.context;
-    const MaterialView& material = batch.material;
-    for (int i = 0; i < kVectors; ++i) {
-        if (!points.used[i]) continue;
-        const SurfacePoint<Float> s = load_point(l, points.surface[i]);
-        const ShadedPoint<Float> c = shade_as<kFamily, kTextured>(
-            context, material, s, [](int, const LightSample<Float>&) { return Float(1.0f); });
-        points.radiance[i].x = c.radiance.x, points.radiance[i].y = c.radiance.y, points.radiance[i].z = c.radiance.z;
-        points.alpha[i] = c.alpha;
-    }
+    const MaterialView material = batch.material;
+    const BlockBatch<Layout> block{Layout::layout(batch.job), points};
+    shade_as<kFamily, kTextured>(
+        context, material, block, [](int, const LightSample<Float>&, int) { return Float(1.0f); }, points.shaded);
 }
 
 // The stages for a job: those that know its layout and family beforehand have less code.
@@ -86,10 +102,10 @@ __attribute__((noinline)) inline void develop_block(const DevelopJob& job, const
     for (int i = 0; i < kVectors; ++i) {
         Uint pixels = background;
         if (points.used[i] == kAllLanes) {
-            pixels = display_pixels(film, points.radiance[i], one);
+            pixels = display_pixels(film, points.shaded[i].radiance, one);
         } else if (points.used[i]) {
             const Mask covered = points.ordinals[i] != Uint(0u);
-            const Vec3T<Float>& c = points.radiance[i];
+            const Vec3T<Float>& c = points.shaded[i].radiance;
             pixels = display_pixels(
                 film, {select(covered, c.x, zero), select(covered, c.y, zero), select(covered, c.z, zero)},
                 select(covered, one, zero));
@@ -111,9 +127,9 @@ __attribute__((noinline)) inline void add_block(const ShadeJob& job, const Point
             const Float before = job.first ? zero : load<Float>(plane + at);
             store(plane + at, before + select(covered, value, zero));
         };
-        add(job.r, points.radiance[i].x);
-        add(job.g, points.radiance[i].y);
-        add(job.b, points.radiance[i].z);
+        add(job.r, points.shaded[i].radiance.x);
+        add(job.g, points.shaded[i].radiance.y);
+        add(job.b, points.shaded[i].radiance.z);
         add(job.alpha, one);
     }
 }
@@ -161,10 +177,10 @@ inline void shade_list(const ShadeJob& job) {
         for (std::uint32_t i = 0; i < kVectors; ++i) {
             const std::uint32_t at = first + i * kWidth;
             if (at >= job.count) break;
-            store(job.r + at, points.radiance[i].x);
-            store(job.g + at, points.radiance[i].y);
-            store(job.b + at, points.radiance[i].z);
-            store(job.alpha + at, points.alpha[i]);
+            store(job.r + at, points.shaded[i].radiance.x);
+            store(job.g + at, points.shaded[i].radiance.y);
+            store(job.b + at, points.shaded[i].radiance.z);
+            store(job.alpha + at, points.shaded[i].alpha);
         }
     }
 }

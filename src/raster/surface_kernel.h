@@ -47,6 +47,7 @@ struct CornerArrays {
 // The layouts that most scenes have are constants of the code, which then keeps all planes in
 // registers; the others are read from the job.
 struct NormalOnly {
+    static constexpr bool kColored = false;
     static constexpr SurfaceLayout kLayout{.count = 4, .normal = 1};
     template <class Job>
     static TESSERA_INLINE constexpr const SurfaceLayout& layout(const Job&) {
@@ -54,6 +55,7 @@ struct NormalOnly {
     }
 };
 struct NormalAndUv {
+    static constexpr bool kColored = false;
     static constexpr SurfaceLayout kLayout{.count = 6, .normal = 1, .uv = {4, -1, -1, -1}};
     template <class Job>
     static TESSERA_INLINE constexpr const SurfaceLayout& layout(const Job&) {
@@ -61,6 +63,7 @@ struct NormalAndUv {
     }
 };
 struct ColorOnly {
+    static constexpr bool kColored = true;
     static constexpr SurfaceLayout kLayout{.count = 5, .color = 1};
     template <class Job>
     static TESSERA_INLINE constexpr const SurfaceLayout& layout(const Job&) {
@@ -68,6 +71,7 @@ struct ColorOnly {
     }
 };
 struct AnyLayout {
+    static constexpr bool kColored = true;
     template <class Job>
     static TESSERA_INLINE const SurfaceLayout& layout(const Job& job) {
         return job.layout;

@@ -47,6 +47,7 @@ SurfacePoint<float> SurfaceSampler::point(std::uint32_t triangle, SamplePosition
         layout_, x, y, [this](int i) { return record_[i]; }, sample);
     SurfacePoint<float> s = surface_point(layout_, rays_, sample, x, y, side, record_[3], context_.footprint_scale);
     s.geometric_normal = geometric_normal_ * side;
+    if (layout_.tangent >= 0) s.normal = shading_normal(material(triangle), s);
     return s;
 }
 

@@ -40,28 +40,25 @@ TESSERA_INLINE F power_cosine(F cosine, float exponent) {
     return power;
 }
 
-// The textbooks' terms, to be weighed by I_l = irradiance / pi: kd (l.n), Lambert's cosine law, and a highlight,
-// which is nothing where n.l <= 0.
+// The cosine that a textbook's highlight is a power of, as a quotient whose root is still to be drawn:
+// numerator / sqrt(squared).
 template <class F>
-TESSERA_INLINE F lambert_cosine(const Incidence<F>& i) {
-    return max(i.n_l, F(0.0f));
-}
-// ks (v.r)^ns with r = 2 (n.l) n - l (Phong 1975).
+struct HighlightCosine {
+    F numerator, squared;
+};
+
+// Phong 1975: v.r with r = 2 (n.l) n - l. Blinn 1977: n.h with h = (l + v) / |l + v|.
 template <class F>
-TESSERA_INLINE F phong_highlight(const MaterialView& m, const LobeParameters<F>& p, const Incidence<F>& i) {
-    const F v_r = F(2.0f) * i.n_l * p.n_v - dot(p.view, i.to_light);
-    return select(i.n_l > F(0.0f), power_cosine(v_r, m.shininess), F(0.0f));
-}
-// ks (n.h)^ns with h = (l + v) / |l + v| (Blinn 1977).
-template <class F>
-TESSERA_INLINE F blinn_phong_highlight(const MaterialView& m, const LobeParameters<F>& p, const Incidence<F>& i) {
-    const Vec3T<F> h = i.to_light + p.view;
-    const F n_h = (i.n_l + p.n_v) / sqrt(max(dot(h, h), F(1e-12f)));
-    return select(i.n_l > F(0.0f), power_cosine(n_h, m.shininess), F(0.0f));
+TESSERA_INLINE HighlightCosine<F> highlight_cosine(ShadingModel model, const Vec3T<F>& normal, const Vec3T<F>& view,
+                                                   const Vec3T<F>& to_light, F n_l) {
+    const F n_v = dot(normal, view);
+    if (model == ShadingModel::kPhong) return {F(2.0f) * n_l * n_v - dot(view, to_light), F(1.0f)};
+    const Vec3T<F> h = to_light + view;
+    return {n_l + n_v, dot(h, h)};
 }
 template <class F>
-TESSERA_INLINE F highlight(const MaterialView& m, const LobeParameters<F>& p, const Incidence<F>& i) {
-    return m.model == ShadingModel::kPhong ? phong_highlight(m, p, i) : blinn_phong_highlight(m, p, i);
+TESSERA_INLINE F cosine(ShadingModel model, const HighlightCosine<F>& c) {
+    return model == ShadingModel::kPhong ? c.numerator : c.numerator / sqrt(max(c.squared, F(1e-12f)));
 }
 
 // glTF 2.0 metallic-roughness (specification, appendix B): Lambert under a GGX microfacet layer with

@@ -52,11 +52,22 @@ TESSERA_INLINE Vec4T<F> read_input(const MaterialView& m, TextureSlot slot, cons
                           uv.x * F(r[3]) + uv.y * F(r[4]) + F(r[5]), footprint);
 }
 
-// Base colour and alpha: factor, texture and vertex colour.
+// Colour and alpha of the surface itself: texture and vertex colour.
+template <bool kTextured = true, class F>
+TESSERA_INLINE Vec4T<F> surface_color(const MaterialView& m, const SurfacePoint<F>& s) {
+    return read_input<kTextured>(m, TextureSlot::kBaseColor, s) * s.color;
+}
+// The same with the material's factor: the base colour of metallic-roughness and unlit.
 template <bool kTextured = true, class F>
 TESSERA_INLINE Vec4T<F> base_color(const MaterialView& m, const SurfacePoint<F>& s) {
     const Vec4T<F> factor{F(m.base_color[0]), F(m.base_color[1]), F(m.base_color[2]), F(m.base_color[3])};
-    return factor * read_input<kTextured>(m, TextureSlot::kBaseColor, s) * s.color;
+    return factor * surface_color<kTextured>(m, s);
+}
+
+// 1 where nothing is in the way of ambient light.
+template <class F>
+TESSERA_INLINE F occlusion(const MaterialView& m, const SurfacePoint<F>& s) {
+    return F(1.0f) + F(m.occlusion_strength) * (read_input(m, TextureSlot::kOcclusion, s).x - F(1.0f));
 }
 
 // Alpha as the alpha mode sees it: 1 for opaque materials, 0 or 1 for cut-outs.
@@ -67,19 +78,10 @@ TESSERA_INLINE F coverage_of_alpha(const MaterialView& m, F alpha) {
     return saturate(alpha);
 }
 
-// What the lobes need to know of the material at a point.
+// The normal that shading takes: the surface's, bent by a normal map where there is one.
 template <class F>
-struct LobeParameters {
-    Vec3T<F> normal, view;  // unit; the view direction points to the eye
-    F n_v;                  // their cosine, not clamped
-    Vec3T<F> base;          // base colour, or the factor on ka and kd
-    Vec3T<F> emission;
-    F alpha, metallic, roughness, occlusion;
-};
-
-template <bool kTextured = true, class F>
 TESSERA_INLINE Vec3T<F> shading_normal(const MaterialView& m, const SurfacePoint<F>& s) {
-    if (!kTextured || !m.input(TextureSlot::kNormal).texture) return s.normal;
+    if (!m.input(TextureSlot::kNormal).texture) return s.normal;
     const Vec4T<F> texel = read_input(m, TextureSlot::kNormal, s);
     const F scale(m.normal_scale);
     const F x = (texel.x * F(2.0f) - F(1.0f)) * scale, y = (texel.y * F(2.0f) - F(1.0f)) * scale;
@@ -88,33 +90,31 @@ TESSERA_INLINE Vec3T<F> shading_normal(const MaterialView& m, const SurfacePoint
     return normalize_or((s.tangent * x + s.bitangent * y) * s.side + s.normal * z, s.normal);
 }
 
-// Normal, view and their cosine, which is all that the textbooks' highlights read.
-template <bool kTextured = true, class F>
-TESSERA_INLINE void set_directions(const MaterialView& m, const SurfacePoint<F>& s, LobeParameters<F>& p) {
-    p.normal = shading_normal<kTextured>(m, s);
-    p.view = {s.view.x, s.view.y, s.view.z};  // number by number: g++ copies a whole Vec3T through memory
-    p.n_v = dot(p.normal, p.view);
-}
+// What the microfacets need to know of the material at a point.
+template <class F>
+struct LobeParameters {
+    Vec3T<F> normal, view;  // unit; the view direction points to the eye
+    F n_v;                  // their cosine, not clamped
+    Vec3T<F> base, emission;
+    F alpha, metallic, roughness, occlusion;
+};
 
-// What all lit models read besides: colour, emission and occlusion.
 template <bool kTextured = true, class F>
-TESSERA_INLINE void set_colors(const MaterialView& m, const SurfacePoint<F>& s, LobeParameters<F>& p) {
-    const Vec4T<F> base = base_color<kTextured>(m, s);
+TESSERA_INLINE LobeParameters<F> evaluate_material(const MaterialView& m, const SurfacePoint<F>& s) {
+    LobeParameters<F> p;
+    // Number by number: g++ copies a whole Vec3T through memory.
+    p.normal = {s.normal.x, s.normal.y, s.normal.z};
+    p.view = {s.view.x, s.view.y, s.view.z};
+    p.n_v = dot(p.normal, p.view);
+    const Vec4T<F> base = base_color<kTextured>(m, s),
+                   mr = read_input<kTextured>(m, TextureSlot::kMetallicRoughness, s);
     p.base = base.xyz();
     p.alpha = coverage_of_alpha(m, base.w);
-    p.emission = Vec3T<F>::load(m.emission) * read_input<kTextured>(m, TextureSlot::kEmissive, s).xyz();
-    p.occlusion = F(1.0f);
-    if (kTextured) {
-        const F occlusion = read_input(m, TextureSlot::kOcclusion, s).x;
-        p.occlusion = F(1.0f) + F(m.occlusion_strength) * (occlusion - F(1.0f));
-    }
-}
-
-template <bool kTextured = true, class F>
-TESSERA_INLINE void set_microfacets(const MaterialView& m, const SurfacePoint<F>& s, LobeParameters<F>& p) {
-    const Vec4T<F> mr = read_input<kTextured>(m, TextureSlot::kMetallicRoughness, s);
     p.metallic = saturate(F(m.metallic) * mr.z);
     p.roughness = saturate(F(m.roughness) * mr.y);
+    p.emission = Vec3T<F>::load(m.emission) * read_input<kTextured>(m, TextureSlot::kEmissive, s).xyz();
+    p.occlusion = kTextured ? occlusion(m, s) : F(1.0f);
+    return p;
 }
 
 }  // namespace tessera

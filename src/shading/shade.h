@@ -38,48 +38,95 @@ TESSERA_INLINE ShadingFamily family_of(ShadingModel model) {
     return ShadingFamily::kMicrofacet;
 }
 
-// Three numbers that all lanes share, times another.
+// A batch is what shading takes at a time: kCount points (or vectors of them), of which it reads what it
+// needs by their number. One point is the batch of the reference; kernels have blocks.
 template <class F>
-TESSERA_INLINE Vec3T<F> scaled(const float (&v)[3], float scale) {
-    return {F(v[0] * scale), F(v[1] * scale), F(v[2] * scale)};
+struct BatchOfOne {
+    static constexpr int kCount = 1;
+    static constexpr bool kColored = true;
+    const SurfacePoint<F>& s;
+
+    TESSERA_INLINE bool used(int) const { return true; }
+    TESSERA_INLINE Vec3T<F> position(int) const { return s.position; }
+    TESSERA_INLINE Vec3T<F> normal(int) const { return s.normal; }
+    TESSERA_INLINE Vec3T<F> view(int) const { return s.view; }
+    TESSERA_INLINE const SurfacePoint<F>& point(int) const { return s; }
+};
+
+// Products of numbers that all lanes share.
+template <class F>
+TESSERA_INLINE Vec3T<F> product(const float (&a)[3], const float (&b)[3], float scale) {
+    return {F(a[0] * b[0] * scale), F(a[1] * b[1] * scale), F(a[2] * b[2] * scale)};
 }
 
-// I = ke + Ia ka + sum over lights of kd I_l (l.n) + ks I_l (highlight); the base colour modulates ka and
-// kd. Coefficients that all lanes share are multiplied once, after the sums.
-template <bool kTextured, class F, class Visible>
-TESSERA_INLINE ShadedPoint<F> shade_textbook(const ShadingContext& context, const MaterialView& m,
-                                             const SurfacePoint<F>& s, Visible&& visible) {
-    LobeParameters<F> p;
-    set_directions<kTextured>(m, s, p);
-    Vec3T<F> diffuse = Vec3T<F>::splat(F(0.0f)), highlights = diffuse;
-    for (int i = 0; i < context.light_count; ++i) {
-        const LightView& view = context.lights[i];
-        const Vec3T<F> intensity = Vec3T<F>::load(view.intensity);
-        const LightSample<F> light = sample_light(view, s.position);
-        const F strength = light.strength * visible(i, light);
-        const Incidence<F> incidence{light.to_light, dot(p.normal, light.to_light)};
-        diffuse = diffuse + intensity * (lambert_cosine(incidence) * strength);
-        if (m.model != ShadingModel::kLambert)
-            highlights = highlights + intensity * (highlight(m, p, incidence) * strength);
+// I = ke + Ia ka + sum over lights of kd I_l (l.n) + ks I_l (highlight). Texture and vertex colour
+// modulate ka and kd. In short loops over the batch, so that the square roots and divisions of its
+// vectors overlap. `visible(light, sample, point)` as below.
+template <bool kTextured, class F, class Batch, class Visible>
+TESSERA_INLINE void shade_textbook(const ShadingContext& context, const MaterialView& m, const Batch& batch,
+                                   Visible&& visible, ShadedPoint<F>* out) {
+    constexpr int kCount = Batch::kCount;
+    constexpr bool kColored = kTextured || Batch::kColored;
+    Vec3T<F> color[kCount];
+    for (int k = 0; k < kCount; ++k) {
+        if (!batch.used(k)) continue;
+        Vec3T<F> radiance = product<F>(m.ambient, context.ambient.ground, 1.0f);
+        if (!context.ambient.uniform)
+            radiance = Vec3T<F>::load(m.ambient) * ambient_radiance(context.ambient, batch.normal(k), F(1.0f));
+        Vec3T<F> emission = Vec3T<F>::load(m.emission);
+        F alpha(m.base_color[3]);
+        if constexpr (kColored) {
+            const SurfacePoint<F> s = batch.point(k);
+            const Vec4T<F> c = surface_color<kTextured>(m, s);
+            color[k] = c.xyz();
+            alpha = alpha * c.w;
+            radiance = radiance * color[k];
+            if (kTextured) {
+                radiance = radiance * occlusion(m, s);
+                emission = emission * read_input(m, TextureSlot::kEmissive, s).xyz();
+            }
+        }
+        out[k].radiance = radiance + emission;
+        out[k].alpha = coverage_of_alpha(m, alpha);
     }
-    set_colors<kTextured>(m, s, p);
-    const Vec3T<F> ambient = ambient_radiance(context.ambient, p.normal, F(1.0f)) * p.occlusion;
-    const Vec3T<F> ka = Vec3T<F>::load(m.ambient), kd = scaled<F>(m.diffuse, kInversePi),
-                   ks = scaled<F>(m.specular, kInversePi);
-    return {p.emission + (p.base * (ka * ambient + kd * diffuse) + ks * highlights), p.alpha};
+    for (int i = 0; i < context.light_count; ++i) {
+        const LightView light = context.lights[i];
+        const Vec3T<F> kd = product<F>(m.diffuse, light.intensity, kInversePi),
+                       ks = product<F>(m.specular, light.intensity, kInversePi);
+        F n_l[kCount], strength[kCount];
+        HighlightCosine<F> highlight[kCount];
+        for (int k = 0; k < kCount; ++k) {
+            if (!batch.used(k)) continue;
+            const LightSample<F> sample = sample_light(light, batch.position(k));
+            const Vec3T<F> normal = batch.normal(k);
+            strength[k] = sample.strength * visible(i, sample, k);
+            n_l[k] = dot(normal, sample.to_light);
+            if (m.model != ShadingModel::kLambert)
+                highlight[k] = highlight_cosine(m.model, normal, batch.view(k), sample.to_light, n_l[k]);
+        }
+        for (int k = 0; k < kCount; ++k) {
+            if (!batch.used(k)) continue;
+            const F zero(0.0f);
+            Vec3T<F> diffuse = kd * (max(n_l[k], zero) * strength[k]);
+            if constexpr (kColored) diffuse = diffuse * color[k];
+            Vec3T<F> sum = out[k].radiance + diffuse;
+            if (m.model != ShadingModel::kLambert) {
+                const F power = power_cosine(cosine(m.model, highlight[k]), m.shininess);
+                sum = sum + ks * (select(n_l[k] > zero, power, zero) * strength[k]);
+            }
+            out[k].radiance = sum;
+        }
+    }
 }
 
 template <bool kTextured, class F, class Visible>
 TESSERA_INLINE ShadedPoint<F> shade_microfacet(const ShadingContext& context, const MaterialView& m,
-                                               const SurfacePoint<F>& s, Visible&& visible) {
-    LobeParameters<F> p;
-    set_directions<kTextured>(m, s, p);
-    set_colors<kTextured>(m, s, p);
-    set_microfacets<kTextured>(m, s, p);
+                                               const SurfacePoint<F>& s, int k, Visible&& visible) {
+    const LobeParameters<F> p = evaluate_material<kTextured>(m, s);
     Vec3T<F> radiance = p.emission + MetallicRoughnessLobe::reflect_ambient(p, context.ambient) * p.occlusion;
     for (int i = 0; i < context.light_count; ++i) {
         const LightSample<F> light = sample_light(context.lights[i], s.position);
-        const F arrives = visible(i, light);
+        const F arrives = visible(i, light, k);
         const Incidence<F> incidence{light.to_light, dot(p.normal, light.to_light)};
         radiance = radiance + MetallicRoughnessLobe::reflect(p, incidence) * light.irradiance * arrives;
     }
@@ -93,31 +140,45 @@ TESSERA_INLINE ShadedPoint<F> shade_unlit(const ShadingContext& context, const M
     return {base.xyz() * F(context.unlit_scale), coverage_of_alpha(m, base.w)};
 }
 
-// For a material of the given family. `visible(light, sample)` gives the part of a light that arrives,
-// 0 .. 1 (shadows). Lights are summed in their order.
-template <ShadingFamily kFamily, bool kTextured, class F, class Visible>
-TESSERA_INLINE ShadedPoint<F> shade_as(const ShadingContext& context, const MaterialView& m, const SurfacePoint<F>& s,
-                                       Visible&& visible) {
-    if constexpr (kFamily == ShadingFamily::kUnlit)
-        return shade_unlit<kTextured>(context, m, s);
-    else if constexpr (kFamily == ShadingFamily::kTextbook)
-        return shade_textbook<kTextured>(context, m, s, visible);
-    else
-        return shade_microfacet<kTextured>(context, m, s, visible);
+// For a material of the given family. `visible(light, sample, point)` gives the part of a light that arrives
+// at a point of the batch, 0 .. 1 (shadows). Lights are summed in their order.
+template <ShadingFamily kFamily, bool kTextured, class F, class Batch, class Visible>
+TESSERA_INLINE void shade_as(const ShadingContext& context, const MaterialView& m, const Batch& batch,
+                             Visible&& visible, ShadedPoint<F>* out) {
+    if constexpr (kFamily == ShadingFamily::kTextbook) {
+        shade_textbook<kTextured>(context, m, batch, visible, out);
+    } else {
+        for (int k = 0; k < Batch::kCount; ++k) {
+            if (!batch.used(k)) continue;
+            ShadedPoint<F> c;
+            if constexpr (kFamily == ShadingFamily::kUnlit)
+                c = shade_unlit<kTextured>(context, m, batch.point(k));
+            else
+                c = shade_microfacet<kTextured>(context, m, batch.point(k), k, visible);
+            out[k].radiance.x = c.radiance.x, out[k].radiance.y = c.radiance.y, out[k].radiance.z = c.radiance.z;
+            out[k].alpha = c.alpha;
+        }
+    }
 }
 
 template <class F, class Visible>
 TESSERA_INLINE ShadedPoint<F> shade(const ShadingContext& context, const MaterialView& m, const SurfacePoint<F>& s,
                                     Visible&& visible) {
+    const BatchOfOne<F> one{s};
+    const auto see = [&](int light, const LightSample<F>& sample, int) { return visible(light, sample); };
+    ShadedPoint<F> c;
     switch (family_of(m.model)) {
         case ShadingFamily::kUnlit:
-            return shade_as<ShadingFamily::kUnlit, true>(context, m, s, visible);
+            shade_as<ShadingFamily::kUnlit, true>(context, m, one, see, &c);
+            break;
         case ShadingFamily::kTextbook:
-            return shade_as<ShadingFamily::kTextbook, true>(context, m, s, visible);
+            shade_as<ShadingFamily::kTextbook, true>(context, m, one, see, &c);
+            break;
         case ShadingFamily::kMicrofacet:
+            shade_as<ShadingFamily::kMicrofacet, true>(context, m, one, see, &c);
             break;
     }
-    return shade_as<ShadingFamily::kMicrofacet, true>(context, m, s, visible);
+    return c;
 }
 
 }  // namespace tessera

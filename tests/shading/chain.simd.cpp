@@ -115,8 +115,8 @@ void shade_batch(const ChainJob& job, int first) {
     SurfaceSample<Float> sample;
     sample_planes(
         job.layout, to_float(x), to_float(y), [&record](int i) { return record[i]; }, sample);
-    const SurfacePoint<Float> s = surface_point(job.layout, PictureRays(*job.projection), sample, to_float(x),
-                                                to_float(y), record[2], record[3], job.context->footprint_scale);
+    SurfacePoint<Float> s = surface_point(job.layout, PictureRays(*job.projection), sample, to_float(x), to_float(y),
+                                          record[2], record[3], job.context->footprint_scale);
     out.put(s.position);
     out.put(s.geometric_normal);
     out.put(s.normal);
@@ -130,10 +130,8 @@ void shade_batch(const ChainJob& job, int first) {
         out.put(s.footprint[k].uy);
         out.put(s.footprint[k].vy);
     }
-    LobeParameters<Float> p;
-    set_directions(*job.material, s, p);
-    set_colors(*job.material, s, p);
-    set_microfacets(*job.material, s, p);
+    if (job.layout.tangent >= 0) s.normal = shading_normal(*job.material, s);
+    const LobeParameters<Float> p = evaluate_material(*job.material, s);
     out.put(p.normal);
     out.put(p.view);
     out.put(p.n_v);
