@@ -15,6 +15,7 @@ inline constexpr std::uint32_t kAllLanes = (1u << (kLanes<Float> - 1) << 1) - 1;
 struct Points {
     static constexpr int kNumbers = 3 * 3 + 4 + 6 * kMaxUvSets;
 
+    const std::uint32_t* numbers;  // ordinals one by one
     std::uint32_t used[kVectors];  // lanes that count
     Uint ordinals[kVectors];
     Float x[kVectors], y[kVectors];     // picture positions
@@ -73,23 +74,31 @@ inline constexpr int kFew = kLanes<Float> < 4 ? kLanes<Float> : 4;
 TESSERA_INLINE void blend_samples(const SurfaceLayout& l, Mask mask, const SurfaceSample<Float>& from,
                                   SurfaceSample<Float>& to) {
     for (int k = 0; k < l.count; ++k) to.value[k] = select(mask, from.value[k], to.value[k]);
-    to.inverse_w_ddx = select(mask, from.inverse_w_ddx, to.inverse_w_ddx);
-    to.inverse_w_ddy = select(mask, from.inverse_w_ddy, to.inverse_w_ddy);
+    if (l.tangent >= 0) {
+        to.side = select(mask, from.side, to.side);
+        to.bitangent_sign = select(mask, from.bitangent_sign, to.bitangent_sign);
+    }
+    bool any_uv = false;
     for (int set = 0; set < kMaxUvSets; ++set) {
         if (l.uv[set] < 0) continue;
+        any_uv = true;
         const Footprint<Float>& a = from.uv_plane[set];
         Footprint<Float>& b = to.uv_plane[set];
-        b = {select(mask, a.ux, b.ux), select(mask, a.vx, b.vx), select(mask, a.uy, b.uy), select(mask, a.vy, b.vy)};
+        b.ux = select(mask, a.ux, b.ux), b.vx = select(mask, a.vx, b.vx);
+        b.uy = select(mask, a.uy, b.uy), b.vy = select(mask, a.vy, b.vy);
     }
+    if (!any_uv) return;
+    to.inverse_w_ddx = select(mask, from.inverse_w_ddx, to.inverse_w_ddx);
+    to.inverse_w_ddy = select(mask, from.inverse_w_ddy, to.inverse_w_ddy);
 }
 
-// The sample of each lane's own triangle. `used` are the lanes that count, at least one.
-TESSERA_INLINE void sample_lanes(const ShadeJob& job, const SurfaceLayout& l, const Uint& ordinals, std::uint32_t used,
-                                 Float x, Float y, SurfaceSample<Float>& sample, Float& side, Float& sign) {
+// The sample of each lane's own triangle. `used` are the lanes that count, at least one; `numbers` are the
+// ordinals one by one.
+TESSERA_INLINE void sample_lanes(const ShadeJob& job, const SurfaceLayout& l, const Uint& ordinals,
+                                 const std::uint32_t* numbers, std::uint32_t used, Float x, Float y,
+                                 SurfaceSample<Float>& sample) {
     constexpr int kWidth = kLanes<Float>;
-    alignas(64) std::uint32_t ordinal[kWidth];
-    store(ordinal, ordinals);
-    const auto record_of = [&](int lane) { return job.records + job.record_of[ordinal[lane]]; };
+    const auto record_of = [&](int lane) { return job.records + job.record_of[numbers[lane]]; };
     const auto sample_of = [&](const float* record, SurfaceSample<Float>& out) {
         sample_planes(
             l, x, y, [record](int i) { return Float(record[i]); }, out);
@@ -100,35 +109,26 @@ TESSERA_INLINE void sample_lanes(const ShadeJob& job, const SurfaceLayout& l, co
     Mask shows[kFew];
     for (; few < kFew && rest; ++few) {
         first[few] = __builtin_ctz(rest);
-        shows[few] = ordinals == Uint(ordinal[first[few]]);
+        shows[few] = ordinals == Uint(numbers[first[few]]);
         rest &= ~mask_bits(shows[few]);
     }
     if (!rest) {
-        const float* record = record_of(first[0]);
-        sample_of(record, sample);
-        side = Float(record[2]);
-        sign = Float(record[3]);
+        sample_of(record_of(first[0]), sample);
         for (int n = 1; n < few; ++n) {
-            record = record_of(first[n]);
             SurfaceSample<Float> other;
-            sample_of(record, other);
+            sample_of(record_of(first[n]), other);
             blend_samples(l, shows[n], other, sample);
-            side = select(shows[n], Float(record[2]), side);
-            sign = select(shows[n], Float(record[3]), sign);
         }
         return;
     }
-    Float numbers[kMaxSurfaceFloats];
-    const int floats = surface_floats(l);
+    Float record[kMaxSurfaceFloats];
     const float* records[kWidth];
     for (int lane = 0; lane < kWidth; ++lane) records[lane] = record_of(lane);
-    for (int i = 0; i < floats; i += 4)
-        load_records([&](int lane) { return records[lane] + i; }, numbers[i], numbers[i + 1], numbers[i + 2],
-                     numbers[i + 3]);
+    for (int i = 0; i < surface_floats(l); i += 4)
+        load_records([&](int lane) { return records[lane] + i; }, record[i], record[i + 1], record[i + 2],
+                     record[i + 3]);
     sample_planes(
-        l, x, y, [&numbers](int i) { return numbers[i]; }, sample);
-    side = numbers[2];
-    sign = numbers[3];
+        l, x, y, [&record](int i) { return record[i]; }, sample);
 }
 
 // From ordinals and positions to Points::surface.
@@ -138,15 +138,14 @@ __attribute__((noinline)) void find_surfaces(const Batch& batch, Points& points)
     const SurfaceLayout& l = Layout::layout(job);
     const PictureRays rays = batch.rays;
     const float footprint_scale = batch.context.footprint_scale;
-    for (int i = 0; i < kVectors; ++i) {
-        if (!points.used[i]) continue;
-        const Float x = points.x[i], y = points.y[i];
+    for (int k = 0; k < kVectors; ++k) {
+        if (!points.used[k]) continue;
+        const Float x = points.x[k], y = points.y[k];
         SurfaceSample<Float> sample;
-        Float side, sign;
-        sample_lanes(job, l, points.ordinals[i], points.used[i], x, y, sample, side, sign);
-        SurfacePoint<Float> s = surface_point(l, rays, sample, x, y, side, sign, footprint_scale);
+        sample_lanes(job, l, points.ordinals[k], points.numbers + k * kLanes<Float>, points.used[k], x, y, sample);
+        SurfacePoint<Float> s = surface_point(l, rays, sample, x, y, footprint_scale);
         if (l.tangent >= 0) s.normal = shading_normal(batch.material, s);
-        Float* const numbers = points.surface[i];
+        Float* const numbers = points.surface[k];
         visit_numbers(l, s, [numbers](int n, const Float& number) TESSERA_INLINE_LAMBDA { numbers[n] = number; });
     }
 }

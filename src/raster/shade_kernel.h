@@ -78,6 +78,7 @@ TESSERA_INLINE bool take_block(const ShadeJob& job, int column, int row, const s
     const Float columns = to_float(lane_column() << 8), rows = to_float(lane_row() << 8);
     const float x = static_cast<float>(256 * (job.x0 + column) + job.offset.x),
                 y = static_cast<float>(256 * (job.y0 + row) + job.offset.y);
+    points.numbers = ordinals;
     std::uint32_t some = 0;
     for (int i = 0; i < kVectors; ++i) {
         const int at = i * kLanes<Float>;
@@ -162,6 +163,7 @@ inline void shade_list(const ShadeJob& job) {
     constexpr std::uint32_t kWidth = kLanes<Float>;
     Points points;
     for (std::uint32_t first = 0; first < job.count; first += kBlockPixels) {
+        points.numbers = job.list + first;
         for (std::uint32_t i = 0; i < kVectors; ++i) {
             const std::uint32_t at = first + i * kWidth;
             points.used[i] = 0;

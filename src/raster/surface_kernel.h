@@ -145,8 +145,8 @@ TESSERA_INLINE Mask cut_out(const SurfaceSource& source, std::uint32_t instance,
     SurfaceSample<Float> sample;
     sample_planes(
         layout, x, y, [record](int i) { return Float(record[i]); }, sample);
-    const SurfacePoint<Float> s = surface_point(layout, PictureRays(source.projection), sample, x, y, Float(record[2]),
-                                                Float(record[3]), source.shading->footprint_scale);
+    const SurfacePoint<Float> s =
+        surface_point(layout, PictureRays(source.projection), sample, x, y, source.shading->footprint_scale);
     return base_color(material, s).w < Float(material.alpha_cutoff);
 }
 

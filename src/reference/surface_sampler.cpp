@@ -41,12 +41,12 @@ Corner<float> SurfaceSampler::corner(std::uint32_t index, int i) const {
 
 SurfacePoint<float> SurfaceSampler::point(std::uint32_t triangle, SamplePosition at) {
     fetch_planes(triangle);
-    const float x = static_cast<float>(at.x), y = static_cast<float>(at.y), side = record_[2];
+    const float x = static_cast<float>(at.x), y = static_cast<float>(at.y);
     SurfaceSample<float> sample;
     sample_planes(
         layout_, x, y, [this](int i) { return record_[i]; }, sample);
-    SurfacePoint<float> s = surface_point(layout_, rays_, sample, x, y, side, record_[3], context_.footprint_scale);
-    s.geometric_normal = geometric_normal_ * side;
+    SurfacePoint<float> s = surface_point(layout_, rays_, sample, x, y, context_.footprint_scale);
+    s.geometric_normal = geometric_normal_ * s.side;
     if (layout_.tangent >= 0) s.normal = shading_normal(material(triangle), s);
     return s;
 }

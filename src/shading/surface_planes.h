@@ -173,10 +173,12 @@ TESSERA_INLINE void make_planes(const InstanceView& instance, const SurfaceLayou
 
 // --- from planes to the surface point ----------------------------------------------------------
 
-// The planes' values at a sample, and what the footprints need of the planes themselves.
+// The planes' values at a sample, and what else a point needs of the triangle's record: side, sign of the
+// bitangent, and the planes themselves for the footprints.
 template <class F>
 struct SurfaceSample {
     F value[kMaxSurfacePlanes];
+    F side, bitangent_sign;
     F inverse_w_ddx, inverse_w_ddy;
     Footprint<F> uv_plane[kMaxUvSets];
 };
@@ -185,6 +187,8 @@ struct SurfaceSample {
 template <class F, class Number>
 TESSERA_INLINE void sample_planes(const SurfaceLayout& l, F x, F y, Number&& number, SurfaceSample<F>& out) {
     const F dx = x - number(0), dy = y - number(1);
+    out.side = number(2);
+    out.bitangent_sign = number(3);
     out.inverse_w_ddx = number(kSurfaceHeader + 1);
     out.inverse_w_ddy = number(kSurfaceHeader + 2);
     for (int k = 0; k < l.count; ++k) {
@@ -200,8 +204,7 @@ TESSERA_INLINE void sample_planes(const SurfaceLayout& l, F x, F y, Number&& num
 
 template <class F>
 TESSERA_INLINE SurfacePoint<F> surface_point(const SurfaceLayout& l, const PictureRays& rays,
-                                             const SurfaceSample<F>& sample, F x, F y, F side, F bitangent_sign,
-                                             float footprint_scale) {
+                                             const SurfaceSample<F>& sample, F x, F y, float footprint_scale) {
     const F* v = sample.value;
     SurfacePoint<F> s;
     const F zero(0.0f), one(1.0f);
@@ -217,12 +220,13 @@ TESSERA_INLINE SurfacePoint<F> surface_point(const SurfaceLayout& l, const Pictu
         const F inverse = one / sqrt(eye_x * eye_x + eye_y * eye_y + one);
         s.view = {eye_x * inverse, eye_y * inverse, inverse};
     }
-    s.side = side;
+    s.side = sample.side;
     s.geometric_normal = s.tangent = s.bitangent = none;
     s.normal =
         l.normal >= 0 ? normalize_or(Vec3T<F>{v[l.normal], v[l.normal + 1], v[l.normal + 2]}, toward_eye) : toward_eye;
     if (l.tangent >= 0)
-        set_tangent_frame(s, s.normal * side, {v[l.tangent], v[l.tangent + 1], v[l.tangent + 2]}, bitangent_sign);
+        set_tangent_frame(s, s.normal * sample.side, {v[l.tangent], v[l.tangent + 1], v[l.tangent + 2]},
+                          sample.bitangent_sign);
     s.color = {one, one, one, one};
     if (l.color >= 0) s.color = {v[l.color] * w, v[l.color + 1] * w, v[l.color + 2] * w, v[l.color + 3] * w};
     for (int set = 0; set < kMaxUvSets; ++set) {

@@ -86,7 +86,7 @@ struct PlaneCase {
         SurfaceSample<float> sample;
         sample_planes(
             layout, x, y, [this](int i) { return record[i]; }, sample);
-        return surface_point(layout, PictureRays(projection), sample, x, y, record[2], record[3], 1.0f);
+        return surface_point(layout, PictureRays(projection), sample, x, y, 1.0f);
     }
     // What plane k interpolates, at corner i.
     float number(int k, int i) const {
