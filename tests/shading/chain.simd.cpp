@@ -116,7 +116,7 @@ void shade_batch(const ChainJob& job, int first) {
     sample_planes(
         job.layout, to_float(x), to_float(y), [&record](int i) { return record[i]; }, sample);
     SurfacePoint<Float> s = surface_point(job.layout, PictureRays(*job.projection), sample, to_float(x), to_float(y),
-                                          record[2], record[3], job.context->footprint_scale);
+                                          job.context->footprint_scale);
     out.put(s.position);
     out.put(s.geometric_normal);
     out.put(s.normal);
