@@ -21,6 +21,12 @@ TESSERA_INLINE void store_records(Pointer&& pointer, float a, float b, float c, 
 // kLanes consecutive records of three floats.
 TESSERA_INLINE void load_triples(const float* p, float& a, float& b, float& c) { a = p[0], b = p[1], c = p[2]; }
 
+// Eight numbers at a time to pointer(0), pointer(1), ..., or all of them where the vector has fewer.
+template <class Pointer>
+TESSERA_INLINE void store_eights(Pointer&& pointer, std::uint32_t a) {
+    __builtin_memcpy(pointer(0), &a, sizeof a);
+}
+
 TESSERA_INLINE std::uint32_t or3(std::uint32_t a, std::uint32_t b, std::uint32_t c) { return a | b | c; }
 TESSERA_INLINE std::int32_t or3(std::int32_t a, std::int32_t b, std::int32_t c) { return a | b | c; }
 // The least of the lanes; which zero it is where both signs occur is not specified.
@@ -100,6 +106,18 @@ TESSERA_INLINE void store_records(Pointer&& pointer, Float a, Float b, Float c, 
 }
 TESSERA_INLINE void load_triples(const float* p, Float& a, Float& b, Float& c) {
     hn::LoadInterleaved3(Tag<float>(), p, a.v, b.v, c.v);
+}
+
+template <class Pointer, class V>
+requires std::is_same_v<V, Uint> TESSERA_INLINE void store_eights(Pointer&& pointer, V a) {
+    const auto to = [&](int i) { return reinterpret_cast<std::uint32_t*>(pointer(i)); };
+    if constexpr (kCount == 16) {
+        const hn::FixedTag < std::uint32_t, kCount<8 ? kCount : 8> d8;
+        hn::StoreU(hn::LowerHalf(d8, a.v), d8, to(0));
+        hn::StoreU(hn::UpperHalf(d8, a.v), d8, to(1));
+    } else {
+        hn::StoreU(a.v, Tag<std::uint32_t>(), to(0));
+    }
 }
 
 TESSERA_INLINE Int or3(Int a, Int b, Int c) { return Int(hn::Or3(a.v, b.v, c.v)); }

@@ -43,9 +43,11 @@ inline void develop_tile(const DevelopJob& job) {
     const Float weight(job.weight), zero(0.0f);
     const Uint background = display_pixels(job.film, {zero, zero, zero}, zero);
     if (!job.r) {
-        for_each_vector(job.side, job.width, job.height, [&](int, int x, int y) {
-            store_pixels(background, job.rgba, job.stride, x, y, job.width, job.height);
-        });
+        alignas(64) std::uint32_t row[kMaxTileSide];
+        for (int x = 0; x < kMaxTileSide; x += kLanes<Float>) store(row + x, background);
+        for (int y = 0; y < job.height; ++y)
+            __builtin_memcpy(job.rgba + static_cast<std::size_t>(y) * job.stride, row,
+                             4 * static_cast<std::size_t>(job.width));
         return;
     }
     for_each_vector(job.side, job.width, job.height, [&](int at, int x, int y) {

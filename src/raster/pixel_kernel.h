@@ -10,6 +10,7 @@ namespace tessera::TESSERA_ISA_NAMESPACE {
 // vectors in a row.
 inline constexpr int kRows = kLanes<Float> > kBlockSide ? kLanes<Float> / kBlockSide : 1;
 inline constexpr int kPerRow = kLanes<Float> < kBlockSide ? kBlockSide / kLanes<Float> : 1;
+inline constexpr int kPixelColumns = kLanes<Float> < kBlockSide ? kLanes<Float> : kBlockSide;
 TESSERA_INLINE Int lane_column() { return iota<Int>() & Int(kBlockSide - 1); }
 TESSERA_INLINE Int lane_row() { return iota<Int>() >> 3; }
 
@@ -17,17 +18,18 @@ TESSERA_INLINE Int lane_row() { return iota<Int>() >> 3; }
 // (x, y): the vector's first pixel in the tile.
 TESSERA_INLINE void store_pixels(const Uint& values, unsigned char* first_pixel, std::size_t stride, int x, int y,
                                  int width, int height) {
+    unsigned char* const first = first_pixel + static_cast<std::size_t>(y) * stride + 4 * static_cast<std::size_t>(x);
+    if (x + kPixelColumns <= width && y + kRows <= height)
+        return store_eights([=](int row) { return first + static_cast<std::size_t>(row) * stride; }, values);
     alignas(64) std::uint32_t all[kLanes<Float>];
     store(all, values);
-    constexpr int kColumns = kLanes<Float> < kBlockSide ? kLanes<Float> : kBlockSide;
     for (int row = 0; row < kRows; ++row) {
         if (y + row >= height) return;
-        unsigned char* const to =
-            first_pixel + static_cast<std::size_t>(y + row) * stride + 4 * static_cast<std::size_t>(x);
-        if (x + kColumns <= width)
-            __builtin_memcpy(to, all + row * kColumns, 4 * kColumns);
+        unsigned char* const to = first + static_cast<std::size_t>(row) * stride;
+        if (x + kPixelColumns <= width)
+            __builtin_memcpy(to, all + row * kPixelColumns, 4 * kPixelColumns);
         else if (x < width)
-            __builtin_memcpy(to, all + row * kColumns, 4 * static_cast<std::size_t>(width - x));
+            __builtin_memcpy(to, all + row * kPixelColumns, 4 * static_cast<std::size_t>(width - x));
     }
 }
 

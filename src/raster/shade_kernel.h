@@ -29,13 +29,13 @@ struct BlockBatch {
 };
 
 // From Points::surface to radiance and alpha.
-template <class Layout, ShadingFamily kFamily, bool kTextured>
+template <class Layout, ShadingFamily kFamily, int kUvSets>
 __attribute__((noinline)) void shade_surfaces(const Batch& batch, Points& points) {
     // Copies, which no store can change.
     const ShadingContext context = batch.context;
     const MaterialView material = batch.material;
     const BlockBatch<Layout> block{Layout::layout(batch.job), points};
-    shade_as<kFamily, kTextured>(
+    shade_as<kFamily, kUvSets>(
         context, material, block, [](int, const LightSample<Float>&, int) { return Float(1.0f); }, points.shaded);
 }
 
@@ -46,27 +46,28 @@ struct Stages {
 
     explicit Stages(const Batch& batch) {
         using enum ShadingFamily;
-        bool textured = false;
-        for (const TextureInput& in : batch.material.inputs) textured |= in.texture != nullptr;
+        int uv_sets = 0;  // that the material may name
+        for (const TextureInput& in : batch.material.inputs)
+            if (in.texture && in.uv_set >= uv_sets) uv_sets = in.uv_set + 1;
         const ShadingFamily family = family_of(batch.material.model);
         const SurfaceLayout& l = batch.job.layout;
         find = &find_surfaces<AnyLayout>;
-        shade = family == kUnlit      ? &shade_surfaces<AnyLayout, kUnlit, true>
-                : family == kTextbook ? &shade_surfaces<AnyLayout, kTextbook, true>
-                                      : &shade_surfaces<AnyLayout, kMicrofacet, true>;
+        shade = family == kUnlit      ? &shade_surfaces<AnyLayout, kUnlit, kMaxUvSets>
+                : family == kTextbook ? &shade_surfaces<AnyLayout, kTextbook, kMaxUvSets>
+                                      : &shade_surfaces<AnyLayout, kMicrofacet, kMaxUvSets>;
         if (l == NormalOnly::kLayout) {
             find = &find_surfaces<NormalOnly>;
-            if (!textured)
-                shade = family == kTextbook ? &shade_surfaces<NormalOnly, kTextbook, false>
-                                            : &shade_surfaces<NormalOnly, kMicrofacet, false>;
+            if (uv_sets == 0)
+                shade = family == kTextbook ? &shade_surfaces<NormalOnly, kTextbook, 0>
+                                            : &shade_surfaces<NormalOnly, kMicrofacet, 0>;
         } else if (l == NormalAndUv::kLayout) {
             find = &find_surfaces<NormalAndUv>;
-            if (textured)
-                shade = family == kTextbook ? &shade_surfaces<NormalAndUv, kTextbook, true>
-                                            : &shade_surfaces<NormalAndUv, kMicrofacet, true>;
+            if (uv_sets == 1)
+                shade = family == kTextbook ? &shade_surfaces<NormalAndUv, kTextbook, 1>
+                                            : &shade_surfaces<NormalAndUv, kMicrofacet, 1>;
         } else if (l == ColorOnly::kLayout) {
             find = &find_surfaces<ColorOnly>;
-            if (!textured) shade = &shade_surfaces<ColorOnly, kUnlit, false>;
+            if (uv_sets == 0) shade = &shade_surfaces<ColorOnly, kUnlit, 0>;
         }
     }
 };

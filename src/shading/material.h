@@ -32,16 +32,17 @@ struct MaterialView {
 };
 
 // The value of a texture input at a point; white where the material has none. Here and below
-// kTextured = false is for materials without any texture: the same bits, less code.
-template <bool kTextured = true, class F>
+// kUvSets is how many sets of texture coordinates the material's inputs may name, 0 where it has no
+// texture at all: the same bits, less code.
+template <int kUvSets = kMaxUvSets, class F>
 TESSERA_INLINE Vec4T<F> read_input(const MaterialView& m, TextureSlot slot, const SurfacePoint<F>& s) {
     const TextureInput& in = m.input(slot);
-    if (!kTextured || !in.texture) return {F(1.0f), F(1.0f), F(1.0f), F(1.0f)};
+    if (kUvSets == 0 || !in.texture) return {F(1.0f), F(1.0f), F(1.0f), F(1.0f)};
     const float* r = in.transform;
     // By comparison: an index would make the compiler read every set from memory.
     Vec2T<F> uv = s.uv[0];
     Footprint<F> d = s.footprint[0];
-    for (int set = 1; set < kMaxUvSets; ++set) {
+    for (int set = 1; set < kUvSets; ++set) {
         if (in.uv_set != set) continue;
         uv = s.uv[set];
         d = s.footprint[set];
@@ -53,15 +54,15 @@ TESSERA_INLINE Vec4T<F> read_input(const MaterialView& m, TextureSlot slot, cons
 }
 
 // Colour and alpha of the surface itself: texture and vertex colour.
-template <bool kTextured = true, class F>
+template <int kUvSets = kMaxUvSets, class F>
 TESSERA_INLINE Vec4T<F> surface_color(const MaterialView& m, const SurfacePoint<F>& s) {
-    return read_input<kTextured>(m, TextureSlot::kBaseColor, s) * s.color;
+    return read_input<kUvSets>(m, TextureSlot::kBaseColor, s) * s.color;
 }
 // The same with the material's factor: the base colour of metallic-roughness and unlit.
-template <bool kTextured = true, class F>
+template <int kUvSets = kMaxUvSets, class F>
 TESSERA_INLINE Vec4T<F> base_color(const MaterialView& m, const SurfacePoint<F>& s) {
     const Vec4T<F> factor{F(m.base_color[0]), F(m.base_color[1]), F(m.base_color[2]), F(m.base_color[3])};
-    return factor * surface_color<kTextured>(m, s);
+    return factor * surface_color<kUvSets>(m, s);
 }
 
 // 1 where nothing is in the way of ambient light.
@@ -99,21 +100,20 @@ struct LobeParameters {
     F alpha, metallic, roughness, occlusion;
 };
 
-template <bool kTextured = true, class F>
+template <int kUvSets = kMaxUvSets, class F>
 TESSERA_INLINE LobeParameters<F> evaluate_material(const MaterialView& m, const SurfacePoint<F>& s) {
     LobeParameters<F> p;
     // Number by number: g++ copies a whole Vec3T through memory.
     p.normal = {s.normal.x, s.normal.y, s.normal.z};
     p.view = {s.view.x, s.view.y, s.view.z};
     p.n_v = dot(p.normal, p.view);
-    const Vec4T<F> base = base_color<kTextured>(m, s),
-                   mr = read_input<kTextured>(m, TextureSlot::kMetallicRoughness, s);
+    const Vec4T<F> base = base_color<kUvSets>(m, s), mr = read_input<kUvSets>(m, TextureSlot::kMetallicRoughness, s);
     p.base = base.xyz();
     p.alpha = coverage_of_alpha(m, base.w);
     p.metallic = saturate(F(m.metallic) * mr.z);
     p.roughness = saturate(F(m.roughness) * mr.y);
-    p.emission = Vec3T<F>::load(m.emission) * read_input<kTextured>(m, TextureSlot::kEmissive, s).xyz();
-    p.occlusion = kTextured ? occlusion(m, s) : F(1.0f);
+    p.emission = Vec3T<F>::load(m.emission) * read_input<kUvSets>(m, TextureSlot::kEmissive, s).xyz();
+    p.occlusion = kUvSets > 0 ? occlusion(m, s) : F(1.0f);
     return p;
 }
 

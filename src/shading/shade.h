@@ -62,11 +62,11 @@ TESSERA_INLINE Vec3T<F> product(const float (&a)[3], const float (&b)[3], float 
 // I = ke + Ia ka + sum over lights of kd I_l (l.n) + ks I_l (highlight). Texture and vertex colour
 // modulate ka and kd. In short loops over the batch, so that the square roots and divisions of its
 // vectors overlap. `visible(light, sample, point)` as below.
-template <bool kTextured, class F, class Batch, class Visible>
+template <int kUvSets, class F, class Batch, class Visible>
 TESSERA_INLINE void shade_textbook(const ShadingContext& context, const MaterialView& m, const Batch& batch,
                                    Visible&& visible, ShadedPoint<F>* out) {
     constexpr int kCount = Batch::kCount;
-    constexpr bool kColored = kTextured || Batch::kColored;
+    constexpr bool kColored = kUvSets > 0 || Batch::kColored;
     Vec3T<F> color[kCount];
     for (int k = 0; k < kCount; ++k) {
         if (!batch.used(k)) continue;
@@ -77,11 +77,11 @@ TESSERA_INLINE void shade_textbook(const ShadingContext& context, const Material
         F alpha(m.base_color[3]);
         if constexpr (kColored) {
             const SurfacePoint<F> s = batch.point(k);
-            const Vec4T<F> c = surface_color<kTextured>(m, s);
+            const Vec4T<F> c = surface_color<kUvSets>(m, s);
             color[k] = c.xyz();
             alpha = alpha * c.w;
             radiance = radiance * color[k];
-            if (kTextured) {
+            if (kUvSets > 0) {
                 radiance = radiance * occlusion(m, s);
                 emission = emission * read_input(m, TextureSlot::kEmissive, s).xyz();
             }
@@ -119,10 +119,10 @@ TESSERA_INLINE void shade_textbook(const ShadingContext& context, const Material
     }
 }
 
-template <bool kTextured, class F, class Visible>
+template <int kUvSets, class F, class Visible>
 TESSERA_INLINE ShadedPoint<F> shade_microfacet(const ShadingContext& context, const MaterialView& m,
                                                const SurfacePoint<F>& s, int k, Visible&& visible) {
-    const LobeParameters<F> p = evaluate_material<kTextured>(m, s);
+    const LobeParameters<F> p = evaluate_material<kUvSets>(m, s);
     Vec3T<F> radiance = p.emission + MetallicRoughnessLobe::reflect_ambient(p, context.ambient) * p.occlusion;
     for (int i = 0; i < context.light_count; ++i) {
         const LightSample<F> light = sample_light(context.lights[i], s.position);
@@ -133,28 +133,28 @@ TESSERA_INLINE ShadedPoint<F> shade_microfacet(const ShadingContext& context, co
     return {radiance, p.alpha};
 }
 
-template <bool kTextured, class F>
+template <int kUvSets, class F>
 TESSERA_INLINE ShadedPoint<F> shade_unlit(const ShadingContext& context, const MaterialView& m,
                                           const SurfacePoint<F>& s) {
-    const Vec4T<F> base = base_color<kTextured>(m, s);
+    const Vec4T<F> base = base_color<kUvSets>(m, s);
     return {base.xyz() * F(context.unlit_scale), coverage_of_alpha(m, base.w)};
 }
 
 // For a material of the given family. `visible(light, sample, point)` gives the part of a light that arrives
 // at a point of the batch, 0 .. 1 (shadows). Lights are summed in their order.
-template <ShadingFamily kFamily, bool kTextured, class F, class Batch, class Visible>
+template <ShadingFamily kFamily, int kUvSets, class F, class Batch, class Visible>
 TESSERA_INLINE void shade_as(const ShadingContext& context, const MaterialView& m, const Batch& batch,
                              Visible&& visible, ShadedPoint<F>* out) {
     if constexpr (kFamily == ShadingFamily::kTextbook) {
-        shade_textbook<kTextured>(context, m, batch, visible, out);
+        shade_textbook<kUvSets>(context, m, batch, visible, out);
     } else {
         for (int k = 0; k < Batch::kCount; ++k) {
             if (!batch.used(k)) continue;
             ShadedPoint<F> c;
             if constexpr (kFamily == ShadingFamily::kUnlit)
-                c = shade_unlit<kTextured>(context, m, batch.point(k));
+                c = shade_unlit<kUvSets>(context, m, batch.point(k));
             else
-                c = shade_microfacet<kTextured>(context, m, batch.point(k), k, visible);
+                c = shade_microfacet<kUvSets>(context, m, batch.point(k), k, visible);
             out[k].radiance.x = c.radiance.x, out[k].radiance.y = c.radiance.y, out[k].radiance.z = c.radiance.z;
             out[k].alpha = c.alpha;
         }
@@ -169,13 +169,13 @@ TESSERA_INLINE ShadedPoint<F> shade(const ShadingContext& context, const Materia
     ShadedPoint<F> c;
     switch (family_of(m.model)) {
         case ShadingFamily::kUnlit:
-            shade_as<ShadingFamily::kUnlit, true>(context, m, one, see, &c);
+            shade_as<ShadingFamily::kUnlit, kMaxUvSets>(context, m, one, see, &c);
             break;
         case ShadingFamily::kTextbook:
-            shade_as<ShadingFamily::kTextbook, true>(context, m, one, see, &c);
+            shade_as<ShadingFamily::kTextbook, kMaxUvSets>(context, m, one, see, &c);
             break;
         case ShadingFamily::kMicrofacet:
-            shade_as<ShadingFamily::kMicrofacet, true>(context, m, one, see, &c);
+            shade_as<ShadingFamily::kMicrofacet, kMaxUvSets>(context, m, one, see, &c);
             break;
     }
     return c;
