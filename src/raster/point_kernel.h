@@ -103,21 +103,19 @@ TESSERA_INLINE void sample_lanes(const ShadeJob& job, const SurfaceLayout& l, co
         sample_planes(
             l, x, y, [record](int i) { return Float(record[i]); }, out);
     };
-    // The few triangles that the lanes show, and who shows them.
+    // The first lanes of the few triangles that are shown.
     int first[kFew] = {}, few = 0;
     std::uint32_t rest = used;
-    Mask shows[kFew];
     for (; few < kFew && rest; ++few) {
         first[few] = __builtin_ctz(rest);
-        shows[few] = ordinals == Uint(numbers[first[few]]);
-        rest &= ~mask_bits(shows[few]);
+        rest &= ~mask_bits(ordinals == Uint(numbers[first[few]]));
     }
     if (!rest) {
         sample_of(record_of(first[0]), sample);
         for (int n = 1; n < few; ++n) {
             SurfaceSample<Float> other;
             sample_of(record_of(first[n]), other);
-            blend_samples(l, shows[n], other, sample);
+            blend_samples(l, ordinals == Uint(numbers[first[n]]), other, sample);
         }
         return;
     }
