@@ -83,7 +83,8 @@ struct LargeFill {
 struct BlockGroup {
     alignas(64) std::int32_t e[3][kLanes<Float>];  // the edges at its first sample
     alignas(64) float farthest[kLanes<Float>];     // the triangle's depth there, at least
-    std::uint32_t inside, clamps;                  // bit per block: within all edges; the plane leaves the range
+    alignas(64) std::int32_t block[kLanes<Float>], column[kLanes<Float>], row[kLanes<Float>];  // in the tile
+    std::uint32_t inside, clamps;  // bit per block: within all edges; the plane leaves the range
 };
 
 enum class FillKind { kOpaque, kCutOut, kBlend };
@@ -144,10 +145,10 @@ TESSERA_INLINE void fill_crossed(const LargeFill& f, const BlockGroup& group, in
 
 // A block where fragments are counted, cut out or kept.
 template <FillKind kKind, bool kCount>
-TESSERA_INLINE void fill_specially(VisibilityJob& job, const LargeFill& f, const BlockGroup& group, int i, int block_x,
-                                   int block_y, const Int (&lane_e)[3][kPerRow], const Int (&step)[3],
-                                   const float* record, const SurfaceLayout* layout) {
-    const int block = block_y * (job.side / kBlockSide) + block_x;
+TESSERA_INLINE void fill_specially(VisibilityJob& job, const LargeFill& f, const BlockGroup& group, int i,
+                                   const Int (&lane_e)[3][kPerRow], const Int (&step)[3], const float* record,
+                                   const SurfaceLayout* layout) {
+    const int block = group.block[i], block_x = group.column[i], block_y = group.row[i];
     const std::int32_t px = block_x * kBlockSide, py = block_y * kBlockSide;
     float* const depth = job.depth + block * kBlockPixels;
     std::uint32_t* const ordinal = job.ordinal + block * kBlockPixels;
@@ -204,12 +205,33 @@ TESSERA_INLINE void fill_specially(VisibilityJob& job, const LargeFill& f, const
     if (kKind != FillKind::kBlend && job.hierarchical_z) job.floor[block] = least_lane(low);
 }
 
-// Classifies as many blocks at a time as there are lanes, then fills those that are left.
+// Which blocks of a group lie before their floors. `bound`: nothing of the triangle is nearer. A transparent
+// fragment at equal depth may still be in front.
+template <FillKind kKind>
+TESSERA_INLINE std::uint32_t shown_blocks(const float* floors, std::uint32_t rest, Float bound, const int* block,
+                                          bool consecutive) {
+    if (consecutive) {
+        const Float floor = load<Float>(floors + block[0]);
+        return rest & ~mask_bits(kKind == FillKind::kBlend ? bound < floor : bound <= floor);
+    }
+    alignas(64) float nearest[kLanes<Float>];
+    store_aligned(nearest, bound);
+    std::uint32_t shown = 0;
+    for (; rest; rest &= rest - 1) {
+        const int i = __builtin_ctz(rest);
+        const float floor = floors[block[i]];
+        shown |= static_cast<std::uint32_t>(kKind == FillKind::kBlend ? nearest[i] >= floor : nearest[i] > floor) << i;
+    }
+    return shown;
+}
+
+// Classifies the blocks of the triangle's box, as many at a time as there are lanes, then fills those that are
+// left.
 template <FillKind kKind, bool kCount>
 TESSERA_INLINE void fill_blocks(VisibilityJob& job, LargeFill& f, const TriangleBox& box, const float* record,
                                 const SurfaceLayout* layout) {
     constexpr int kWidth = kLanes<Float>;
-    const int blocks = job.side / kBlockSide, shift = __builtin_ctz(static_cast<unsigned>(blocks));
+    const int blocks = job.side / kBlockSide;
     const auto block_of = [&](std::int32_t at) {
         const std::int32_t b = at >> 11;  // 8 pixels of 256
         return b < 0 ? 0 : b > blocks - 1 ? blocks - 1 : b;
@@ -217,7 +239,6 @@ TESSERA_INLINE void fill_blocks(VisibilityJob& job, LargeFill& f, const Triangle
     const std::int32_t x = 256 * job.x0, y = 256 * job.y0;
     const int left = block_of(box.left - x), top = block_of(box.top - y);
     const int right = block_of(box.right - x), bottom = block_of(box.bottom - y);
-    if (top > bottom) return;
     f.set_parts(left, right, top, bottom);
     constexpr std::int32_t kReach = kBlockSide - 1;
     const Int columns = lane_column(), rows = lane_row();
@@ -231,13 +252,17 @@ TESSERA_INLINE void fill_blocks(VisibilityJob& job, LargeFill& f, const Triangle
     }
     const DepthPlane<float>& plane = f.t.depth;
     const Float lowest(plane.lowest), highest(plane.highest);
+    // Blocks of the box are numbered row by row; / width as a product, exact for numbers below 65536 / width.
+    const int width = right - left + 1, count = width * (bottom - top + 1);
+    const Int inverse((65535 + width) / width);
     BlockGroup g;
-    for (int group = (top << shift) & -kWidth; group < (bottom + 1) << shift; group += kWidth) {
-        const Int index = iota<Int>() + Int(group);
-        const Int bx = index & Int(blocks - 1), by = index >> shift;
+    for (int group = 0; group < count; group += kWidth) {
+        // Beyond the last block: that one again.
+        const Int index = min(iota<Int>() + Int(group), Int(count - 1));
+        const Int row = (index * inverse) >> 16;
+        const Int bx = index - row * Int(width) + Int(left), by = row + Int(top);
         const Int px = bx << 3, py = by << 3;
-        Mask todo = !((bx < Int(left)) | (bx > Int(right)) | (by < Int(top)) | (by > Int(bottom)));
-        Mask inside(true);
+        Mask todo = first_n<Float>(count - group), inside(true);
         for (int k = 0; k < 3; ++k) {
             const Int e = Int(f.edges[k].e) + Int(f.edges[k].a) * px + Int(f.edges[k].b) * py;
             todo &= e + most[k] > Int(-1);
@@ -248,27 +273,27 @@ TESSERA_INLINE void fill_blocks(VisibilityJob& job, LargeFill& f, const Triangle
         if (!rest) continue;
         const Int sx = (px << 8) + Int(f.x0), sy = (py << 8) + Int(f.y0);
         const Float nearest = depth_at_corner(plane, sx, sy, true), farthest = depth_at_corner(plane, sx, sy, false);
+        store_aligned(g.block, by * Int(blocks) + bx);
         if (job.hierarchical_z) {
-            const Float bound = min(max(nearest, lowest), highest);
-            const Float floor = load<Float>(job.floor + group);
-            // A transparent fragment at equal depth may still be in front.
-            const Mask hidden = kKind == FillKind::kBlend ? bound < floor : bound <= floor;
-            const std::uint32_t shown = rest & ~mask_bits(hidden);
+            const bool consecutive = width == blocks && count - group >= kWidth;
+            const std::uint32_t shown =
+                shown_blocks<kKind>(job.floor, rest, min(max(nearest, lowest), highest), g.block, consecutive);
             job.counters.blocks_hidden += static_cast<std::uint64_t>(__builtin_popcount(rest ^ shown));
             rest = shown;
+            if (!rest) continue;
         }
-        if (!rest) continue;
         job.counters.blocks_drawn += static_cast<std::uint64_t>(__builtin_popcount(rest));
         g.inside = mask_bits(inside);
         g.clamps = mask_bits((farthest < lowest) | (nearest > highest));
         store_aligned(g.farthest, min(max(farthest, lowest), highest));
+        store_aligned(g.column, bx);
+        store_aligned(g.row, by);
         for (; rest; rest &= rest - 1) {
-            const int i = __builtin_ctz(rest), block = group + i;
-            const int block_x = block & (blocks - 1), block_y = block >> shift;
+            const int i = __builtin_ctz(rest), block = g.block[i];
             if constexpr (kKind == FillKind::kOpaque && !kCount) {
                 float* const depth = job.depth + block * kBlockPixels;
                 std::uint32_t* const ordinal = job.ordinal + block * kBlockPixels;
-                const Float *column_part = f.columns_of(block_x), *row_part = f.rows_of(block_y);
+                const Float *column_part = f.columns_of(g.column[i]), *row_part = f.rows_of(g.row[i]);
                 if (g.inside >> i & 1) {
                     const bool filled = g.clamps >> i & 1
                                             ? fill_inside<true>(f, column_part, row_part, depth, ordinal)
@@ -279,7 +304,7 @@ TESSERA_INLINE void fill_blocks(VisibilityJob& job, LargeFill& f, const Triangle
                                  job.hierarchical_z ? job.floor + block : nullptr);
                 }
             } else {
-                fill_specially<kKind, kCount>(job, f, g, i, block_x, block_y, lane_e, step, record, layout);
+                fill_specially<kKind, kCount>(job, f, g, i, lane_e, step, record, layout);
             }
         }
     }

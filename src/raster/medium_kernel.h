@@ -76,7 +76,8 @@ TESSERA_INLINE void fill_medium(VisibilityJob& job, const PixelPlaces& places, c
         Float dy = first_dy;
         for (std::int32_t y = first_y; y <= bottom; y += kRows) {
             const Mask covered = or3(e0, e1, e2) > Int(-1);
-            if (any(covered)) {
+            // Vectors test without a look at what they cover, which is hard to predict.
+            if (kLanes < Float >> 1 || any(covered)) {
                 const std::int32_t at = places.column[x] + places.row[y];
                 const Float before = load<Float>(job.depth + at);
                 const Float z = min(max((origin + ddy * dy) + x_part, lowest), highest);
