@@ -2,7 +2,7 @@
 // kernel file, once per instruction set.
 #pragma once
 
-#include "raster/block_kernel.h"
+#include "raster/large_kernel.h"
 #include "raster/small_kernel.h"
 
 namespace tessera::TESSERA_ISA_NAMESPACE {
