@@ -18,11 +18,9 @@ inline void find_visible(VisibleJob& job) {
         const Uint ids = load<Uint>(ordinal + at);
         const Mask known = (ids == Uint(last)) | (ids == Uint(before)) | (ids == Uint(0u));
         if (all(known)) continue;
-        // One more triangle by name, several lane by lane.
+        // All lanes: which ones are new is hard to predict, and a wrong guess costs as much.
         before = last;
         last = ordinal[at + __builtin_ctz(mask_bits(!known))];
-        seen[last] = 1;
-        if (all(known | (ids == Uint(last)))) continue;
         for (int i = 0; i < kWidth; ++i) seen[ordinal[at + i]] = 1;
     }
     std::uint32_t* const list = job.list;
