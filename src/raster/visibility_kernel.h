@@ -1,5 +1,5 @@
-// Fills a tile from its bins: masks of small triangles pixel by pixel, large ones by blocks. Part of the
-// kernel file, once per instruction set.
+// Fills a tile from its bins: small triangles by their masks, medium ones by their boxes, large ones by blocks.
+// Part of the kernel file, once per instruction set.
 #pragma once
 
 #include "raster/large_kernel.h"
@@ -31,7 +31,7 @@ inline void draw_bins(VisibilityJob& job) {
             if (!run.large()) {
                 const SmallTriangle* t = bin.small + run.first;
                 for (const SmallTriangle* const end = t + run.count; t != end; ++t) {
-                    __builtin_prefetch(t + 16);
+                    __builtin_prefetch(t + 16);  // past the end of the run it is wasted, not wrong
                     job.triangles[ordinal++] = {t->triangle, t->instance};
                     fill_small<kCount>(job, places, *t, ordinal);
                 }
