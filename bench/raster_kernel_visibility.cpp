@@ -111,13 +111,14 @@ std::vector<KernelCase> visibility_cases() {
     };
     add("small_triangles", "sphere1m", true, Items::kTriangles);
     add("terrain_triangles", "terrain1m", true, Items::kTriangles);
+    add("medium_triangles", "terrain100k", true, Items::kTriangles);
     add("large_samples", "soup20k", true, Items::kSamples);
     for (const bool hierarchical_z : {true, false}) {
         const std::string way = hierarchical_z ? "hi_z" : "no_hi_z";
         add("layers_front_to_back_" + way, "quads_f2b", hierarchical_z, Items::kSamples);
         add("layers_back_to_front_" + way, "quads_b2f", hierarchical_z, Items::kSamples);
     }
-    for (const char* workload : {"quads_f2b", "sphere10k", "sphere1m"}) {
+    for (const char* workload : {"quads_f2b", "sphere10k", "sphere1m", "soup20k"}) {
         cases.push_back({std::string("find_visible/") + workload, [=] { return find_visible_work(workload); }});
         cases.push_back({std::string("label/") + workload, [=] { return label_work(workload); }});
     }

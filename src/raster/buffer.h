@@ -1,10 +1,13 @@
-// An array that grows and is used again: its elements are not initialised, its memory stays.
+// Arrays of the rasterizer. Buffer grows and is used again: its elements are not initialised, its memory
+// stays. PixelArray is a vector that starts on a cache line.
 #pragma once
 
 #include <algorithm>
 #include <cstddef>
 #include <memory>
+#include <new>
 #include <type_traits>
+#include <vector>
 
 namespace tessera {
 
@@ -35,5 +38,22 @@ class Buffer {
     std::unique_ptr<T[]> data_;
     std::size_t capacity_ = 0;
 };
+
+template <class T>
+struct CacheLineAllocator {
+    using value_type = T;
+    static constexpr std::align_val_t kAlignment{64};
+
+    CacheLineAllocator() = default;
+    template <class U>
+    CacheLineAllocator(const CacheLineAllocator<U>&) {}
+    T* allocate(std::size_t count) { return static_cast<T*>(::operator new(count * sizeof(T), kAlignment)); }
+    void deallocate(T* data, std::size_t) { ::operator delete(data, kAlignment); }
+    friend bool operator==(CacheLineAllocator, CacheLineAllocator) { return true; }
+};
+
+// Numbers by pixel: whole vectors of them never lie across two cache lines.
+template <class T>
+using PixelArray = std::vector<T, CacheLineAllocator<T>>;
 
 }  // namespace tessera

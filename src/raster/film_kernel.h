@@ -9,23 +9,27 @@ namespace tessera::TESSERA_ISA_NAMESPACE {
 
 inline void find_visible(VisibleJob& job) {
     constexpr int kWidth = kLanes<Float>;
-    __builtin_memset(job.seen, 0, job.triangle_count + 1);
-    std::uint32_t last = 0;
+    std::uint8_t* const seen = job.seen;
+    const std::uint32_t* const ordinal = job.ordinal;
+    __builtin_memset(seen, 0, job.triangle_count + 1);
+    // The two triangles that were named last: along an edge between them nothing new comes up.
+    std::uint32_t last = 0, before = 0;
     for (int at = 0; at < job.pixels; at += kWidth) {
-        const Uint ids = load<Uint>(job.ordinal + at);
-        const Mask known = (ids == Uint(last)) | (ids == Uint(0u));
+        const Uint ids = load<Uint>(ordinal + at);
+        const Mask known = (ids == Uint(last)) | (ids == Uint(before)) | (ids == Uint(0u));
         if (all(known)) continue;
-        // One more triangle by name, several lane by lane.
-        last = job.ordinal[at + __builtin_ctz(mask_bits(!known))];
-        job.seen[last] = 1;
-        if (all((ids == Uint(last)) | (ids == Uint(0u)))) continue;
-        for (int i = 0; i < kWidth; ++i) job.seen[job.ordinal[at + i]] = 1;
+        // All lanes: which ones are new is hard to predict, and a wrong guess costs as much.
+        before = last;
+        last = ordinal[at + __builtin_ctz(mask_bits(!known))];
+        for (int i = 0; i < kWidth; ++i) seen[ordinal[at + i]] = 1;
     }
-    job.count = 0;
+    std::uint32_t* const list = job.list;
+    std::uint32_t count = 0;
     for (std::uint32_t i = 1; i <= job.triangle_count; ++i) {
-        job.list[job.count] = i;
-        job.count += job.seen[i];
+        list[count] = i;
+        count += seen[i];
     }
+    job.count = count;
 }
 
 // Visits the vectors of a tile's blocks: visit(place, x, y) with the first pixel in the tile.

@@ -141,9 +141,10 @@ struct SurfaceSource {
 };
 
 struct TileCounters {
-    std::uint64_t samples_covered = 0;                  // inside a triangle and tested for depth
-    std::uint64_t fragments_passed = 0;                 // and in front
-    std::uint64_t blocks_drawn = 0, blocks_hidden = 0;  // of large triangles, by hierarchical Z
+    std::uint64_t samples_covered = 0;   // inside a triangle and tested for depth
+    std::uint64_t fragments_passed = 0;  // and in front
+    // Of triangles that are drawn by blocks; hidden by hierarchical Z.
+    std::uint64_t blocks_drawn = 0, blocks_hidden = 0;
 };
 
 // Coverage and depth of a tile at one sample position per pixel. Ordinals count the tile's triangles

@@ -83,8 +83,8 @@ class Tile {
     TileCounters costed_;     // counters at the last estimate
     bool developed_ = false;  // the colours are in the picture already
     std::vector<TileBin> bins_;
-    std::vector<float> depth_, floor_;
-    std::vector<std::uint32_t> ordinal_, overdraw_;
+    PixelArray<float> depth_, floor_;
+    PixelArray<std::uint32_t> ordinal_, overdraw_;
     std::vector<std::uint64_t> hit_;
     std::vector<Fragment> fragments_;
     Buffer<TileTriangle> triangles_;

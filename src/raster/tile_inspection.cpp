@@ -11,7 +11,7 @@ namespace {
 // weights: the same everywhere, so that the picture is, whatever the processor. Vertices and set-up, which
 // belong to no tile, are left out, and so is the film, which costs every tile the same.
 constexpr std::uint64_t kSmallTriangle = 48;   // its mask, 2 to 4 pixels
-constexpr std::uint64_t kLargeTriangle = 60;   // edges at the tile, blocks classified
+constexpr std::uint64_t kLargeTriangle = 60;   // its edges, blocks classified; or a box of few pixels
 constexpr std::uint64_t kBlockDrawn = 24;      // 64 samples
 constexpr std::uint64_t kBlockHidden = 4;      // left out by hierarchical Z
 constexpr std::uint64_t kTriangleSeen = 100;   // its surface record
