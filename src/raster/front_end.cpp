@@ -198,27 +198,67 @@ void FrontEnd::make_chunks(const FrontEndInput& input, int threads) {
     if (chunks_.size() < chunk_begin_.size() - 1) chunks_.resize(chunk_begin_.size() - 1);
 }
 
-void FrontEnd::set_up(const FrontEndInput& input, const Range& range, Scratch& scratch, BinnedChunk& chunk,
-                      FrontCounters& sum) const {
+// Where the vertices of each instance in view go, and in what parts they are transformed. Vertices in a row are
+// transformed once each; where a mesh names few among many, once per corner.
+void FrontEnd::place_vertices(const FrontEndInput& input) {
+    constexpr std::uint32_t kPart = 8192;
+    static_assert(kPart % kMaxLanes == 0, "kernels write whole vectors");
+    const Frame& frame = input.frame;
+    instance_vertices_.assign(frame.instances.size(), {});
+    vertex_ranges_.clear();
+    vertex_begin_.assign(1, 0);
+    std::uint32_t filled = 0;
+    std::vector<std::size_t> places(frame.instances.size());
+    std::size_t size = 0, scattered_corners = 0;
+    for (std::size_t r = 0; r < ranges_.size(); ++r) {
+        const std::uint32_t i = ranges_[r].instance;
+        if (r > 0 && ranges_[r - 1].instance == i) continue;
+        const PreparedMesh& mesh = *frame.prepared[i];
+        const std::size_t corners = 3 * std::size_t{mesh.view.triangle_count};
+        const std::uint32_t span = mesh.highest_vertex - mesh.lowest_vertex + 1;
+        const bool scattered = span > corners;
+        const auto count = scattered ? static_cast<std::uint32_t>(corners) : span;
+        if (scattered) scattered_corners = std::max(scattered_corners, corners);
+        places[i] = size;
+        for (std::uint32_t first = 0; first < count;) {
+            const std::uint32_t part = std::min(kPart, count - first);
+            vertex_ranges_.push_back({i, first, part, scattered, size + first});
+            first += part;
+            filled += part;
+            if (filled < kPart) continue;
+            vertex_begin_.push_back(vertex_ranges_.size());
+            filled = 0;
+        }
+        size += (std::size_t{count} + kMaxLanes - 1) / kMaxLanes * kMaxLanes;
+    }
+    if (filled > 0) vertex_begin_.push_back(vertex_ranges_.size());
+    for (std::size_t i = numbers_.size(); i < scattered_corners; ++i) numbers_.push_back(static_cast<std::uint32_t>(i));
+    const TransformedVertex* const all = vertices_.reserve(size);
+    for (const VertexRange& r : vertex_ranges_) {
+        const PreparedMesh& mesh = *frame.prepared[r.instance];
+        // So that corners count from the first vertex of the mesh.
+        instance_vertices_[r.instance] =
+            r.scattered ? InstanceVertices{all + places[r.instance], numbers_.data()}
+                        : InstanceVertices{all + places[r.instance] - mesh.lowest_vertex, mesh.view.triangles};
+    }
+}
+
+void FrontEnd::transform(const FrontEndInput& input, const VertexRange& range) {
+    const InstanceView& instance = input.frame.instances[range.instance];
+    VertexJob job{};
+    job.instance = &instance;
+    job.width = input.frame.projection.width;
+    job.height = input.frame.projection.height;
+    job.indices = range.scattered ? instance.mesh.triangles + range.first : nullptr;
+    job.first = range.scattered ? 0 : input.frame.prepared[range.instance]->lowest_vertex + range.first;
+    job.count = range.count;
+    job.out = vertices_.data() + range.place;
+    input.kernels.transform(job);
+}
+
+void FrontEnd::set_up(const FrontEndInput& input, const Range& range, BinnedChunk& chunk, FrontCounters& sum) const {
     const InstanceView& instance = input.frame.instances[range.instance];
     const ProjectionView& picture = input.frame.projection;
-    const std::uint32_t* indices = instance.mesh.triangles + 3 * std::size_t{range.first};
-    const std::uint32_t corners = 3 * range.count;
-    std::uint32_t low = 0, high = 0;
-    input.kernels.index_range(indices, corners, low, high);
-
-    // Vertices in a row are transformed once each; scattered ones once per corner.
-    const bool in_a_row = high - low < corners;
-    VertexJob vertices{};
-    vertices.instance = &instance;
-    vertices.width = picture.width;
-    vertices.height = picture.height;
-    vertices.indices = in_a_row ? nullptr : indices;
-    vertices.first = low;
-    vertices.count = in_a_row ? high - low + 1 : corners;
-    vertices.out = scratch.vertices.reserve(vertices.count + kMaxLanes);
-    input.kernels.transform(vertices);
-
     ChunkBuilder builder(chunk, input.grid, picture);
     const MaterialView& material = input.shading.materials[instance.material];
     SetupJob& job = builder.job;
@@ -237,9 +277,7 @@ void FrontEnd::set_up(const FrontEndInput& input, const Range& range, Scratch& s
     job.sample = input.samples[0];
     job.tile_shift = input.grid.shift;
     job.tile_columns = input.grid.columns;
-    job.vertices = scratch.vertices.data();
-    job.indices = in_a_row ? indices : scratch.count_up(corners);
-    job.vertex_base = in_a_row ? low : 0;
+    job.vertices = instance_vertices_[range.instance];
     input.kernels.setup(job);
     chunk.small_count = job.arrays.small_count;
     chunk.large_count = job.arrays.large_count;
@@ -248,32 +286,26 @@ void FrontEnd::set_up(const FrontEndInput& input, const Range& range, Scratch& s
 }
 
 void FrontEnd::build_chunk(const FrontEndInput& input, std::size_t index) {
-    std::unique_ptr<Scratch> scratch;
-    {
-        const std::lock_guard lock(mutex_);
-        if (!scratch_.empty()) {
-            scratch = std::move(scratch_.back());
-            scratch_.pop_back();
-        }
-    }
-    if (!scratch) scratch = std::make_unique<Scratch>();
     BinnedChunk& chunk = chunks_[index];
     chunk.small_count = chunk.large_count = chunk.run_count = 0;
     FrontCounters sum;
-    for (std::size_t r = chunk_begin_[index]; r < chunk_begin_[index + 1]; ++r)
-        set_up(input, ranges_[r], *scratch, chunk, sum);
+    for (std::size_t r = chunk_begin_[index]; r < chunk_begin_[index + 1]; ++r) set_up(input, ranges_[r], chunk, sum);
     ChunkBuilder builder(chunk, input.grid, input.frame.projection);
     builder.job.arrays.small_count = chunk.small_count;
     builder.job.arrays.large_count = chunk.large_count;
     builder.job.arrays.run_count = chunk.run_count;
     builder.sort_runs();
     const std::lock_guard lock(mutex_);
-    scratch_.push_back(std::move(scratch));
     add(counters, sum);
 }
 
 void FrontEnd::run(const FrontEndInput& input, Arena& arena) {
     make_chunks(input, arena.threads());
+    place_vertices(input);
+    arena.for_each(vertex_begin_.size() - 1, [&](std::size_t task) {
+        input.checkpoint();
+        for (std::size_t r = vertex_begin_[task]; r < vertex_begin_[task + 1]; ++r) transform(input, vertex_ranges_[r]);
+    });
     arena.for_each(chunk_begin_.size() - 1, [&](std::size_t chunk) {
         input.checkpoint();
         build_chunk(input, chunk);

@@ -1,5 +1,5 @@
-// The front end: chunks of triangles are transformed, set up and binned to tiles in parallel, each chunk
-// into a store of its own, without locks. Tiles read the chunks in their order, which is that of
+// The front end: vertices are transformed, then chunks of triangles set up and binned to tiles in parallel, each
+// chunk into a store of its own, without locks. Tiles read the chunks in their order, which is that of
 // submission.
 #pragma once
 
@@ -51,6 +51,9 @@ class FrontEnd {
     // What the chunks have for a tile, in the order of submission; returns how many triangles.
     std::uint32_t bins_of(int tile, std::vector<TileBin>& bins) const;
 
+    // By instance; nothing for those that are not in view.
+    const InstanceVertices* vertices() const { return instance_vertices_.data(); }
+
     FrontCounters counters;
     std::uint64_t triangles = 0;
 
@@ -59,27 +62,28 @@ class FrontEnd {
     struct Range {
         std::uint32_t instance, first, count;
     };
-    struct Scratch {
-        Buffer<TransformedVertex> vertices;
-        std::vector<std::uint32_t> numbers;
-
-        // 0, 1, 2, ...: at least `count`.
-        const std::uint32_t* count_up(std::size_t count) {
-            for (std::size_t i = numbers.size(); i < count; ++i) numbers.push_back(static_cast<std::uint32_t>(i));
-            return numbers.data();
-        }
+    // Part of one instance's vertices, or of its corners.
+    struct VertexRange {
+        std::uint32_t instance, first, count;
+        bool scattered;
+        std::size_t place;  // in vertices_
     };
 
     void make_chunks(const FrontEndInput& input, int threads);
+    void place_vertices(const FrontEndInput& input);
+    void transform(const FrontEndInput& input, const VertexRange& range);
     void build_chunk(const FrontEndInput& input, std::size_t chunk);
-    void set_up(const FrontEndInput& input, const Range& range, Scratch& scratch, BinnedChunk& chunk,
-                FrontCounters& sum) const;
+    void set_up(const FrontEndInput& input, const Range& range, BinnedChunk& chunk, FrontCounters& sum) const;
 
     std::vector<Range> ranges_;
     std::vector<std::size_t> chunk_begin_;  // first range of every chunk, and the end
     std::vector<BinnedChunk> chunks_;
+    std::vector<VertexRange> vertex_ranges_;
+    std::vector<std::size_t> vertex_begin_;  // first vertex range of every task, and the end
+    Buffer<TransformedVertex> vertices_;
+    std::vector<InstanceVertices> instance_vertices_;
+    std::vector<std::uint32_t> numbers_;  // 0, 1, 2, ...: the corners of instances whose vertices are scattered
     std::mutex mutex_;
-    std::vector<std::unique_ptr<Scratch>> scratch_;
 };
 
 }  // namespace tessera

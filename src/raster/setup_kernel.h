@@ -14,12 +14,43 @@ TESSERA_INLINE void count_lanes(std::uint64_t& counter, Mask m) {
     counter += static_cast<std::uint64_t>(__builtin_popcount(mask_bits(m)));
 }
 
-// Corner k of kLanes triangles, three indices each.
-TESSERA_INLINE void load_corner(const TransformedVertex* vertices, const std::uint32_t* indices, int k, Float& x,
-                                Float& y, Float& z, Uint& code) {
-    Float code_bits;
-    load_records([&](int lane) { return vertices[indices[3 * lane + k]].numbers; }, x, y, z, code_bits);
-    code = as_uint(code_bits);
+// The corners of kLanes triangles as they were transformed.
+struct SetupCorners {
+    Float x[3], y[3], z[3], inverse_w[3];
+
+    // Three indices each.
+    TESSERA_INLINE SetupCorners(const TransformedVertex* vertices, const std::uint32_t* indices) {
+        for (int k = 0; k < 3; ++k)
+            load_records([&](int lane) { return vertices[indices[3 * lane + k]].numbers; }, x[k], y[k], z[k],
+                         inverse_w[k]);
+    }
+    TESSERA_INLINE Mask plain(int k) const { return inverse_w[k] != Float(0.0f); }
+    TESSERA_INLINE Mask all_plain() const { return plain(0) & plain(1) & plain(2); }
+};
+
+// What is to become of triangles that are not plainly inside.
+struct Rejects {
+    Mask unusable, outside;  // the former first; the rest: to the scalar path
+};
+
+// Triangles with a corner that is not plain. Those of plain corners have codes only where no rounding can have brought
+// them there, so that what is left out here the scalar path leaves out, too.
+TESSERA_INLINE Rejects reject_special(const SetupCorners& c, Float width, Float height) {
+    Uint every(~0u), some(0u);
+    for (int k = 0; k < 3; ++k) {
+        const Float zero(0.0f);
+        const Uint none(0u);
+        const Uint picture =
+            select(c.x[k] < zero, Uint(kOutLeft), none) | select(c.x[k] > width, Uint(kOutRight), none) |
+            select(c.y[k] < zero, Uint(kOutTop), none) | select(c.y[k] > height, Uint(kOutBottom), none) |
+            select(c.z[k] < zero, Uint(kOutFar), none);
+        const Mask plain = c.plain(k);
+        every &= select(plain, picture, as_uint(c.z[k]));
+        some |= select(plain, none, as_uint(c.z[k]));
+    }
+    const Mask unusable = (some & Uint(kUnusable)) != Uint(0u);
+    const Mask outside = (every & Uint(~static_cast<std::uint32_t>(kOutGuard))) != Uint(0u);
+    return {unusable, outside};
 }
 
 // The samples that a box may hold.
@@ -81,38 +112,51 @@ inline void setup(SetupJob& job) {
     constexpr int kWidth = kLanes<Float>;
     const Int last_x(static_cast<std::int32_t>(job.width) - 1), last_y(static_cast<std::int32_t>(job.height) - 1);
     alignas(64) float made[kWidth][sizeof(SmallTriangle) / sizeof(float)];
-    // So that indices count from the first vertex of the mesh.
-    const TransformedVertex* const vertices = job.vertices - job.vertex_base;
+    const Int width(static_cast<std::int32_t>(job.width) * 256), height(static_cast<std::int32_t>(job.height) * 256);
     std::uint32_t rest_indices[3 * kWidth];
     alignas(64) std::int32_t vx[3][kWidth], vy[3][kWidth], tile_x[2][kWidth], tile_y[2][kWidth];
     alignas(64) std::int32_t tiles[kWidth];
     for (std::uint32_t t = 0; t < job.count; t += kWidth) {
         const std::uint32_t left = job.count - t;
         const Mask valid = first_n<Float>(left < std::uint32_t{kWidth} ? static_cast<int>(left) : kWidth);
-        const std::uint32_t* indices = job.indices + 3 * std::size_t{t};
+        const std::uint32_t* indices = job.vertices.corners + 3 * (std::size_t{job.first} + t);
         if (left < std::uint32_t{kWidth}) {  // the last triangle repeated
             for (std::uint32_t i = 0; i < 3 * std::uint32_t{kWidth}; ++i)
                 rest_indices[i] = indices[i < 3 * left ? i : 3 * (left - 1) + i % 3];
             indices = rest_indices;
         }
+        const SetupCorners corners(job.vertices.vertices, indices);
         PictureVertex<Float> p[3];
-        Float z[3];
-        Uint code[3];
-        for (int k = 0; k < 3; ++k) load_corner(vertices, indices, k, p[k].x, p[k].y, z[k], code[k]);
-        const Uint every = code[0] & code[1] & code[2], some = or3(code[0], code[1], code[2]);
-        const Mask usable = valid & ((some & Uint(kUnusable)) == Uint(0u));
-        const Mask outside = usable & ((every & Uint(~static_cast<std::uint32_t>(kOutGuard))) != Uint(0u));
-        const Mask clipped = usable & !outside & ((some & Uint(kMustClip)) != Uint(0u));
-        const Mask inside = usable & !outside & !clipped;
-
-        for (int k = 0; k < 3; ++k) {
-            p[k].snapped_x = nearest_int(p[k].x);
-            p[k].snapped_y = nearest_int(p[k].y);
-        }
+        for (int k = 0; k < 3; ++k)
+            p[k] = {corners.x[k], corners.y[k], nearest_int(corners.x[k]), nearest_int(corners.y[k])};
         const Int low_x = min(min(p[0].snapped_x, p[1].snapped_x), p[2].snapped_x);
         const Int high_x = max(max(p[0].snapped_x, p[1].snapped_x), p[2].snapped_x);
         const Int low_y = min(min(p[0].snapped_y, p[1].snapped_y), p[2].snapped_y);
         const Int high_y = max(max(p[0].snapped_y, p[1].snapped_y), p[2].snapped_y);
+        const Float highest = max(max(corners.z[0], corners.z[1]), corners.z[2]);
+        // Outside a plane of the view volume: for certain where beyond it in the picture. What touches it may be so,
+        // too, and rounded; the scalar path knows.
+        Mask inside = valid & corners.all_plain(), outside(false), slow_lanes(false);
+        if (!all(inside)) {
+            const Mask special = valid & !inside;
+            if (any(special)) {
+                const Rejects r = reject_special(corners, to_float(width), to_float(height));
+                const Mask usable = special & !r.unusable;
+                outside = usable & r.outside;
+                slow_lanes = usable & !r.outside;
+                count_lanes(job.counters.degenerate, special & r.unusable);
+            }
+        }
+        const Mask borderline = inside & ((high_x <= Int(0)) | (low_x >= width) | (high_y <= Int(0)) |
+                                          (low_y >= height) | (highest <= Float(0.0f)));
+        if (any(borderline)) {
+            const Mask beyond = borderline & ((high_x < Int(0)) | (low_x > width) | (high_y < Int(0)) |
+                                              (low_y > height) | (highest < Float(0.0f)));
+            outside |= beyond;
+            slow_lanes |= borderline & !beyond;
+            inside &= !borderline;
+        }
+        count_lanes(job.counters.frustum, outside);
         const Mask exact = inside & (max(high_x - low_x, high_y - low_y) < Int(kExactSide));
         const Int dx1 = p[1].snapped_x - p[0].snapped_x, dy1 = p[1].snapped_y - p[0].snapped_y;
         const Int dx2 = p[2].snapped_x - p[0].snapped_x, dy2 = p[2].snapped_y - p[0].snapped_y;
@@ -123,10 +167,9 @@ inline void setup(SetupJob& job) {
         const Mask front = job.instance->handedness > 0 ? counter_clockwise : !counter_clockwise;
         const Mask facing = job.double_sided ? exact : exact & front;
         Mask keep = facing & !flat;
-        count_lanes(job.counters.frustum, outside);
-        count_lanes(job.counters.degenerate, (valid & !usable) | flat);
+        count_lanes(job.counters.degenerate, flat);
         count_lanes(job.counters.backface, exact & !flat & !facing);
-        const std::uint32_t slow = mask_bits(clipped | (inside & !exact));
+        const std::uint32_t slow = mask_bits(slow_lanes | (inside & !exact));
         if (!(mask_bits(keep) | slow)) continue;
 
         SampleBox box;
@@ -152,11 +195,11 @@ inline void setup(SetupJob& job) {
         Uint rows[2];
         if (job.masks && kept) {
             // Beyond the picture too, so that a mask does not depend on its neighbours' sizes.
-            const Int width = ((high_x - Int(job.sample.x)) >> 8) - box.left;
-            const Int height = ((high_y - Int(job.sample.y)) >> 8) - box.top;
-            const Mask fits = keep & (max(width, height) < Int(kBlockSide));
+            const Int columns = ((high_x - Int(job.sample.x)) >> 8) - box.left;
+            const Int lines = ((high_y - Int(job.sample.y)) >> 8) - box.top;
+            const Mask fits = keep & (max(columns, lines) < Int(kBlockSide));
             if (any(fits)) {
-                const bool wide = any(fits & (width > Int(3))), high = any(fits & (height > Int(3)));
+                const bool wide = any(fits & (columns > Int(3))), high = any(fits & (lines > Int(3)));
                 cover_small(x, y, (box.left << 8) + Int(job.sample.x), (box.top << 8) + Int(job.sample.y), wide, high,
                             rows);
                 const Mask covers = fits & ((rows[0] | rows[1]) != Uint(0u));
@@ -168,7 +211,7 @@ inline void setup(SetupJob& job) {
             }
         }
         if (kept) {
-            const DepthPlane<Float> depth = depth_plane(p, z);
+            const DepthPlane<Float> depth = depth_plane(p, corners.z);
             const Uint number = as_uint(iota<Int>()) + Uint(job.first + t);
             store_records([&](int i) { return made[i]; }, as_float(depth.anchor_x), as_float(depth.anchor_y),
                           depth.depth, depth.ddx);
