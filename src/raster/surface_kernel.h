@@ -13,18 +13,35 @@ TESSERA_INLINE SurfaceLayout layout_of(const SurfaceSource& source, const Instan
 
 // The vertices of kLanes triangles, by corner; lanes beyond the last triangle repeat it.
 struct LaneVertices {
-    std::uint32_t in_mesh[3][kMaxLanes], transformed[3][kMaxLanes];
+    std::uint32_t in_mesh[3][kMaxLanes], by_corner[3][kMaxLanes];
 
-    // The group of triangles from `first` on; asks for the memory that load() will read.
+    // Of the triangles from `first` on. Asks for what will be read of them, as it is seldom in a cache: neighbours in
+    // the list share vertices and lines of the cache, so every other triangle will do, and every fourth one's indices.
     TESSERA_INLINE void find(const SurfaceJob& job, const MeshView& mesh, const InstanceVertices& vertices,
-                             std::uint32_t first) {
-        for (std::uint32_t lane = 0; lane < std::uint32_t{kLanes<Float>}; ++lane) {
-            const std::uint32_t n = first + lane < job.count ? first + lane : job.count - 1;
-            const std::size_t corner = 3 * std::size_t{job.triangles[n]};
-            for (std::uint32_t k = 0; k < 3; ++k) {
-                in_mesh[k][lane] = mesh.triangles[corner + k];
-                transformed[k][lane] = vertices.corners[corner + k];
-            }
+                             const float* normals, std::uint32_t first) {
+        constexpr std::uint32_t kWidth = kLanes<Float>, kAhead = 2 * kMaxLanes;
+        const std::uint32_t last = job.count - 1;
+        const auto triangle = [&](std::uint32_t n)
+                                  TESSERA_INLINE_LAMBDA { return 3 * std::size_t{job.triangles[n < last ? n : last]}; };
+        for (std::uint32_t lane = 0; lane < kWidth; ++lane) {
+            const std::uint32_t* const corners = mesh.triangles + triangle(first + lane);
+            in_mesh[0][lane] = corners[0];
+            in_mesh[1][lane] = corners[1];
+            in_mesh[2][lane] = corners[2];
+        }
+        for (std::uint32_t lane = 0; lane < kWidth; lane += 4)
+            __builtin_prefetch(mesh.triangles + triangle(first + lane + kAhead));
+        if (normals)
+            for (const auto& lanes : in_mesh)
+                for (std::uint32_t lane = 0; lane < kWidth; lane += 2)
+                    __builtin_prefetch(normals + 3 * std::size_t{lanes[lane]});
+        if (vertices.corners == mesh.triangles) {
+            for (const auto& lanes : in_mesh)
+                for (std::uint32_t lane = 0; lane < kWidth; lane += 2)
+                    __builtin_prefetch(vertices.vertices + lanes[lane]);
+        } else {
+            for (std::uint32_t lane = 0; lane < kWidth; ++lane)
+                for (std::uint32_t k = 0; k < 3; ++k) by_corner[k][lane] = vertices.corners[triangle(first + lane) + k];
         }
     }
 };
@@ -112,18 +129,26 @@ inline void make_surfaces_as(const SurfaceJob& job) {
     const SurfaceLayout& layout = Kind::layout(job);
     const int floats = surface_floats(layout);
     const CornerArrays arrays(instance.mesh, layout);
-    LaneVertices lanes;
+    LaneVertices buffers[2];
+    LaneVertices *now = &buffers[0], *next = &buffers[1];
+    next->find(job, instance.mesh, vertices, arrays.normals.base, 0);
     for (std::uint32_t t = 0; t < job.count; t += kWidth) {
         float* const records = job.records + std::size_t{t} * static_cast<std::size_t>(floats);
-        lanes.find(job, instance.mesh, vertices, t);
+        LaneVertices* const swapped = now;
+        now = next;
+        next = swapped;
+        if (t + kWidth < job.count) next->find(job, instance.mesh, vertices, arrays.normals.base, t + kWidth);
+        const LaneVertices& lanes = *now;
+        const auto& places = vertices.corners == instance.mesh.triangles ? lanes.in_mesh : lanes.by_corner;
         Corner<Float> corners[3];
         PictureVertex<Float> p[3];
         Float inverse_w[3];
         Mask special(false);
+#pragma GCC unroll 3
         for (int k = 0; k < 3; ++k) {
             Float unused;
-            load_records([&](int lane) { return vertices.vertices[lanes.transformed[k][lane]].numbers; }, p[k].x,
-                         p[k].y, unused, inverse_w[k]);
+            load_records([&](int lane) { return vertices.vertices[places[k][lane]].numbers; }, p[k].x, p[k].y, unused,
+                         inverse_w[k]);
             p[k].snapped_x = nearest_int(p[k].x);
             p[k].snapped_y = nearest_int(p[k].y);
             special |= inverse_w[k] == Float(0.0f);
