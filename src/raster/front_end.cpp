@@ -175,6 +175,7 @@ void FrontEnd::make_chunks(const FrontEndInput& input, int threads) {
     counters = {};
     triangles = 0;
     ranges_.clear();
+    in_view_.clear();
     chunk_begin_.assign(1, 0);
     std::uint32_t filled = 0;
     for (std::uint32_t i = 0; i < frame.instances.size(); ++i) {
@@ -184,6 +185,7 @@ void FrontEnd::make_chunks(const FrontEndInput& input, int threads) {
             counters.frustum += count;
             continue;
         }
+        if (count > 0) in_view_.push_back(i);
         for (std::uint32_t first = 0; first < count;) {
             const std::uint32_t part = std::min(size - filled, count - first);
             ranges_.push_back({i, first, part});
@@ -196,64 +198,6 @@ void FrontEnd::make_chunks(const FrontEndInput& input, int threads) {
     }
     if (filled > 0) chunk_begin_.push_back(ranges_.size());
     if (chunks_.size() < chunk_begin_.size() - 1) chunks_.resize(chunk_begin_.size() - 1);
-}
-
-// Where the vertices of each instance in view go, and in what parts they are transformed. Vertices in a row are
-// transformed once each; where a mesh names few among many, once per corner.
-void FrontEnd::place_vertices(const FrontEndInput& input) {
-    constexpr std::uint32_t kPart = 8192;
-    static_assert(kPart % kMaxLanes == 0, "kernels write whole vectors");
-    const Frame& frame = input.frame;
-    instance_vertices_.assign(frame.instances.size(), {});
-    vertex_ranges_.clear();
-    vertex_begin_.assign(1, 0);
-    std::uint32_t filled = 0;
-    std::vector<std::size_t> places(frame.instances.size());
-    std::size_t size = 0, scattered_corners = 0;
-    for (std::size_t r = 0; r < ranges_.size(); ++r) {
-        const std::uint32_t i = ranges_[r].instance;
-        if (r > 0 && ranges_[r - 1].instance == i) continue;
-        const PreparedMesh& mesh = *frame.prepared[i];
-        const std::size_t corners = 3 * std::size_t{mesh.view.triangle_count};
-        const std::uint32_t span = mesh.highest_vertex - mesh.lowest_vertex + 1;
-        const bool scattered = span > corners;
-        const auto count = scattered ? static_cast<std::uint32_t>(corners) : span;
-        if (scattered) scattered_corners = std::max(scattered_corners, corners);
-        places[i] = size;
-        for (std::uint32_t first = 0; first < count;) {
-            const std::uint32_t part = std::min(kPart, count - first);
-            vertex_ranges_.push_back({i, first, part, scattered, size + first});
-            first += part;
-            filled += part;
-            if (filled < kPart) continue;
-            vertex_begin_.push_back(vertex_ranges_.size());
-            filled = 0;
-        }
-        size += (std::size_t{count} + kMaxLanes - 1) / kMaxLanes * kMaxLanes;
-    }
-    if (filled > 0) vertex_begin_.push_back(vertex_ranges_.size());
-    for (std::size_t i = numbers_.size(); i < scattered_corners; ++i) numbers_.push_back(static_cast<std::uint32_t>(i));
-    const TransformedVertex* const all = vertices_.reserve(size);
-    for (const VertexRange& r : vertex_ranges_) {
-        const PreparedMesh& mesh = *frame.prepared[r.instance];
-        // So that corners count from the first vertex of the mesh.
-        instance_vertices_[r.instance] =
-            r.scattered ? InstanceVertices{all + places[r.instance], numbers_.data()}
-                        : InstanceVertices{all + places[r.instance] - mesh.lowest_vertex, mesh.view.triangles};
-    }
-}
-
-void FrontEnd::transform(const FrontEndInput& input, const VertexRange& range) {
-    const InstanceView& instance = input.frame.instances[range.instance];
-    VertexJob job{};
-    job.instance = &instance;
-    job.width = input.frame.projection.width;
-    job.height = input.frame.projection.height;
-    job.indices = range.scattered ? instance.mesh.triangles + range.first : nullptr;
-    job.first = range.scattered ? 0 : input.frame.prepared[range.instance]->lowest_vertex + range.first;
-    job.count = range.count;
-    job.out = vertices_.data() + range.place;
-    input.kernels.transform(job);
 }
 
 void FrontEnd::set_up(const FrontEndInput& input, const Range& range, BinnedChunk& chunk, FrontCounters& sum) const {
@@ -277,7 +221,7 @@ void FrontEnd::set_up(const FrontEndInput& input, const Range& range, BinnedChun
     job.sample = input.samples[0];
     job.tile_shift = input.grid.shift;
     job.tile_columns = input.grid.columns;
-    job.vertices = instance_vertices_[range.instance];
+    job.vertices = vertices_.by_instance()[range.instance];
     input.kernels.setup(job);
     chunk.small_count = job.arrays.small_count;
     chunk.large_count = job.arrays.large_count;
@@ -301,11 +245,7 @@ void FrontEnd::build_chunk(const FrontEndInput& input, std::size_t index) {
 
 void FrontEnd::run(const FrontEndInput& input, Arena& arena) {
     make_chunks(input, arena.threads());
-    place_vertices(input);
-    arena.for_each(vertex_begin_.size() - 1, [&](std::size_t task) {
-        input.checkpoint();
-        for (std::size_t r = vertex_begin_[task]; r < vertex_begin_[task + 1]; ++r) transform(input, vertex_ranges_[r]);
-    });
+    vertices_.transform(input.frame, in_view_, input.kernels, arena, input.checkpoint);
     arena.for_each(chunk_begin_.size() - 1, [&](std::size_t chunk) {
         input.checkpoint();
         build_chunk(input, chunk);

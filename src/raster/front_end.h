@@ -5,8 +5,7 @@
 
 #include "core/parallel.h"
 #include "geometry/frame.h"
-#include "raster/buffer.h"
-#include "raster/kernels.h"
+#include "raster/frame_vertices.h"
 
 #include <functional>
 #include <mutex>
@@ -52,7 +51,7 @@ class FrontEnd {
     std::uint32_t bins_of(int tile, std::vector<TileBin>& bins) const;
 
     // By instance; nothing for those that are not in view.
-    const InstanceVertices* vertices() const { return instance_vertices_.data(); }
+    const InstanceVertices* vertices() const { return vertices_.by_instance(); }
 
     FrontCounters counters;
     std::uint64_t triangles = 0;
@@ -62,27 +61,16 @@ class FrontEnd {
     struct Range {
         std::uint32_t instance, first, count;
     };
-    // Part of one instance's vertices, or of its corners.
-    struct VertexRange {
-        std::uint32_t instance, first, count;
-        bool scattered;
-        std::size_t place;  // in vertices_
-    };
 
     void make_chunks(const FrontEndInput& input, int threads);
-    void place_vertices(const FrontEndInput& input);
-    void transform(const FrontEndInput& input, const VertexRange& range);
     void build_chunk(const FrontEndInput& input, std::size_t chunk);
     void set_up(const FrontEndInput& input, const Range& range, BinnedChunk& chunk, FrontCounters& sum) const;
 
+    FrameVertices vertices_;
+    std::vector<std::uint32_t> in_view_;  // instances
     std::vector<Range> ranges_;
     std::vector<std::size_t> chunk_begin_;  // first range of every chunk, and the end
     std::vector<BinnedChunk> chunks_;
-    std::vector<VertexRange> vertex_ranges_;
-    std::vector<std::size_t> vertex_begin_;  // first vertex range of every task, and the end
-    Buffer<TransformedVertex> vertices_;
-    std::vector<InstanceVertices> instance_vertices_;
-    std::vector<std::uint32_t> numbers_;  // 0, 1, 2, ...: the corners of instances whose vertices are scattered
     std::mutex mutex_;
 };
 

@@ -20,7 +20,7 @@ struct SetupCorners {
 
     // Three indices each.
     TESSERA_INLINE SetupCorners(const TransformedVertex* vertices, const std::uint32_t* indices) {
-#pragma GCC unroll 3
+        TESSERA_UNROLL(3)
         for (int k = 0; k < 3; ++k)
             load_records([&](int lane) { return vertices[indices[3 * lane + k]].numbers; }, x[k], y[k], z[k],
                          inverse_w[k]);
@@ -75,10 +75,10 @@ struct LaneEdge {
 template <int kColumns>
 TESSERA_INLINE Uint cover_rows(LaneEdge (&edges)[3]) {
     Uint covered(0u);
-#pragma GCC unroll 4
+    TESSERA_UNROLL(4)
     for (int row = 0; row < 4; ++row) {
         Int e[3] = {edges[0].e, edges[1].e, edges[2].e};
-#pragma GCC unroll 8
+        TESSERA_UNROLL(8)
         for (int column = 0; column < kColumns; ++column) {
             covered |= select(or3(e[0], e[1], e[2]) < Int(0), Uint(0u), Uint(1u << (kBlockSide * row + column)));
             for (int k = 0; k < 3; ++k) e[k] += edges[k].a;

@@ -144,7 +144,7 @@ inline void make_surfaces_as(const SurfaceJob& job) {
         PictureVertex<Float> p[3];
         Float inverse_w[3];
         Mask special(false);
-#pragma GCC unroll 3
+        TESSERA_UNROLL(3)
         for (int k = 0; k < 3; ++k) {
             Float unused;
             load_records([&](int lane) { return vertices.vertices[places[k][lane]].numbers; }, p[k].x, p[k].y, unused,

@@ -119,8 +119,8 @@ TEST_P(RecordsTest, LeastLaneIsTheLeastWhereverItIs) {
 }
 
 TEST_P(RecordsTest, CompressMovesTheLanesOfAnyMaskToTheFront) {
-    float values[kMaxLanes], front[kMaxLanes];
-    for (std::size_t i = 0; i < kMaxLanes; ++i) values[i] = static_cast<float>(i) + 0.5f;
+    float values[kMostLanes], front[kMostLanes];
+    for (std::size_t i = 0; i < kMostLanes; ++i) values[i] = static_cast<float>(i) + 0.5f;
     for (std::uint32_t bits = 0; bits < 1u << lanes(); ++bits) {
         ASSERT_EQ(table().compress(bits, values, front), bits);
         std::size_t next = 0;
