@@ -32,16 +32,15 @@ void FrameVertices::place(const Frame& frame, const std::vector<std::uint32_t>& 
         size += (std::size_t{count} + kMaxLanes - 1) / kMaxLanes * kMaxLanes;
     }
     if (filled > 0) task_begin_.push_back(parts_.size());
-    for (std::size_t i = numbers_.size(); i < scattered_corners; ++i)
-        numbers_.push_back(static_cast<std::uint32_t>(i));
+    for (std::size_t i = numbers_.size(); i < scattered_corners; ++i) numbers_.push_back(static_cast<std::uint32_t>(i));
     const TransformedVertex* const all = vertices_.reserve(size);
     for (const Part& part : parts_) {
         if (part.first > 0) continue;
         const PreparedMesh& mesh = *frame.prepared[part.instance];
         // So that corners count from the first vertex of the mesh.
-        by_instance_[part.instance] = part.scattered
-                                          ? InstanceVertices{all + part.place, numbers_.data()}
-                                          : InstanceVertices{all + part.place - mesh.lowest_vertex, mesh.view.triangles};
+        by_instance_[part.instance] =
+            part.scattered ? InstanceVertices{all + part.place, numbers_.data()}
+                           : InstanceVertices{all + part.place - mesh.lowest_vertex, mesh.view.triangles};
     }
 }
 

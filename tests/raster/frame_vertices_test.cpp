@@ -14,8 +14,10 @@ using namespace test;
 
 Primitive points_ahead(Random& random, std::uint32_t count) {
     Primitive p;
-    for (std::uint32_t i = 0; i < count; ++i)
+    for (std::uint32_t i = 0; i < count; ++i) {
         p.positions.push_back({random.in(-3, 3), random.in(-3, 3), random.in(-9, 1)});
+        p.normals.push_back({0, 0, 1});  // or flat ones would be made, and vertices with them
+    }
     return p;
 }
 
