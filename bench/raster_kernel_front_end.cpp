@@ -13,14 +13,6 @@ struct Probe {
 };
 Probe probe;
 
-void probed_index_range(const std::uint32_t* indices, std::uint32_t count, std::uint32_t& low, std::uint32_t& high) {
-    probe.seconds += seconds_of([&] { probe.kernels->index_range(indices, count, low, high); });
-    probe.items += count;
-    if (!probe.output) return;
-    append(*probe.output, &low, 1);
-    append(*probe.output, &high, 1);
-}
-
 void probed_transform(const VertexJob& job) {
     probe.seconds += seconds_of([&] { probe.kernels->transform(job); });
     probe.items += job.count;
@@ -78,7 +70,6 @@ std::vector<KernelCase> front_end_cases() {
     const auto add = [&](const char* kernel, const char* workload, SetProbe set_probe) {
         cases.push_back({std::string(kernel) + "/" + workload, [=] { return front_end_work(workload, set_probe); }});
     };
-    add("index_range", "sphere1m", [](RasterKernels& k) { k.index_range = &probed_index_range; });
     for (const char* workload : {"sphere1m", "sphere1m_shuffled", "soup20k"})
         add("transform", workload, [](RasterKernels& k) { k.transform = &probed_transform; });
     for (const char* workload : {"sphere1m", "sphere10k", "terrain1m", "soup20k"})

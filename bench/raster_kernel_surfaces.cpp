@@ -22,8 +22,7 @@ struct SurfaceTile : MiddleTile {
         raster_kernels(Isa::kScalar).make_surfaces(surface_job());
     }
     SurfaceJob surface_job() {
-        return {&task.source,  &frame.frame.instances[0], layout, list.data(), static_cast<std::uint32_t>(list.size()),
-                records.data()};
+        return {&task.source, 0, layout, list.data(), static_cast<std::uint32_t>(list.size()), records.data()};
     }
     ShadeJob shade_job() const {
         ShadeJob job{};

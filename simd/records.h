@@ -15,8 +15,8 @@ TESSERA_INLINE void load_records(Pointer&& pointer, float& a, float& b, float& c
 }
 template <class Pointer>
 TESSERA_INLINE void store_records(Pointer&& pointer, float a, float b, float c, float d) {
-    float* p = pointer(0);
-    p[0] = a, p[1] = b, p[2] = c, p[3] = d;
+    const float numbers[4] = {a, b, c, d};
+    __builtin_memcpy(pointer(0), numbers, sizeof numbers);  // records may be of any type
 }
 // kLanes consecutive records of three floats.
 TESSERA_INLINE void load_triples(const float* p, float& a, float& b, float& c) { a = p[0], b = p[1], c = p[2]; }
@@ -29,6 +29,17 @@ TESSERA_INLINE void store_eights(Pointer&& pointer, std::uint32_t a) {
 
 TESSERA_INLINE std::uint32_t or3(std::uint32_t a, std::uint32_t b, std::uint32_t c) { return a | b | c; }
 TESSERA_INLINE std::int32_t or3(std::int32_t a, std::int32_t b, std::int32_t c) { return a | b | c; }
+// The inverse of mask_bits().
+template <class M>
+TESSERA_INLINE M mask_of_bits(std::uint32_t bits) {
+    if constexpr (std::is_same_v<M, bool>) {
+        return bits & 1;
+    } else {
+        return M::of_bits(bits);
+    }
+}
+// The lanes of the mask first, in their order; what follows them is not specified.
+TESSERA_INLINE float compress(float a, bool) { return a; }
 // The least of the lanes; which zero it is where both signs occur is not specified.
 TESSERA_INLINE float least_lane(float a) { return a; }
 
@@ -122,6 +133,7 @@ requires std::is_same_v<V, Uint> TESSERA_INLINE void store_eights(Pointer&& poin
 
 TESSERA_INLINE Int or3(Int a, Int b, Int c) { return Int(hn::Or3(a.v, b.v, c.v)); }
 TESSERA_INLINE Uint or3(Uint a, Uint b, Uint c) { return Uint(hn::Or3(a.v, b.v, c.v)); }
+TESSERA_INLINE Float compress(Float a, Mask m) { return Float(hn::Compress(a.v, m.m)); }
 TESSERA_INLINE float least_lane(Float a) { return hn::GetLane(hn::MinOfLanes(Tag<float>(), a.v)); }
 
 }  // namespace tessera::TESSERA_ISA_NAMESPACE::lanes

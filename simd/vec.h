@@ -20,7 +20,14 @@
 #define TESSERA_INLINE inline __attribute__((always_inline))
 // For what is rare, in functions over the number type only (see above).
 #define TESSERA_COLD __attribute__((noinline, cold))
-// The same for a lambda, between its parameters and its body.
+// Before a short loop whose variables are to stay in registers.
+#define TESSERA_PRAGMA(text) _Pragma(#text)
+#if defined(__clang__)
+#define TESSERA_UNROLL(times) TESSERA_PRAGMA(unroll times)
+#else
+#define TESSERA_UNROLL(times) TESSERA_PRAGMA(GCC unroll times)
+#endif
+// TESSERA_INLINE for a lambda, between its parameters and its body.
 #define TESSERA_INLINE_LAMBDA __attribute__((always_inline))
 
 namespace tessera {

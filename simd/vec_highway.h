@@ -61,6 +61,11 @@ struct Mask {
             return bytes[0] & ((1u << kCount) - 1);
         }
     }
+    static TESSERA_INLINE Mask of_bits(std::uint32_t bits) {
+        std::uint8_t bytes[8] = {};
+        __builtin_memcpy(bytes, &bits, sizeof bits);
+        return Mask(hn::LoadMaskBits(Tag<float>(), bytes));
+    }
     friend TESSERA_INLINE Mask select(Mask mask, Mask a, Mask b) { return (mask & a) | ((!mask) & b); }
 };
 

@@ -6,6 +6,7 @@
 #include "geometry/tangents.h"
 #include "geometry/texture_transform.h"
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <set>
@@ -98,7 +99,16 @@ PreparedMesh::PreparedMesh(Primitive&& m, const Primitive& s)
       source(&s),
       triangles(primitive()),
       bounds(bounds_of(primitive().positions)),
-      view(view_of(*this)) {}
+      view(view_of(*this)) {
+    if (view.triangle_count == 0) return;
+    std::uint32_t low = view.triangles[0], high = low;
+    for (std::size_t i = 0; i < 3 * std::size_t{view.triangle_count}; ++i) {
+        low = std::min(low, view.triangles[i]);
+        high = std::max(high, view.triangles[i]);
+    }
+    lowest_vertex = low;
+    highest_vertex = high;
+}
 
 PreparedScene::PreparedScene(const Scene& scene) : scene_(scene), transforms_(node_transforms(scene)) {
     PlacesTaken taken;

@@ -26,6 +26,7 @@ struct PreparedMesh {
     TriangleList triangles;   // of primitive()
     Bounds3 bounds;           // object space
     MeshView view{};
+    std::uint32_t lowest_vertex = 0, highest_vertex = 0;  // that a triangle names
 };
 
 // A mesh at a node.

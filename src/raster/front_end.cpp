@@ -175,6 +175,7 @@ void FrontEnd::make_chunks(const FrontEndInput& input, int threads) {
     counters = {};
     triangles = 0;
     ranges_.clear();
+    in_view_.clear();
     chunk_begin_.assign(1, 0);
     std::uint32_t filled = 0;
     for (std::uint32_t i = 0; i < frame.instances.size(); ++i) {
@@ -184,6 +185,7 @@ void FrontEnd::make_chunks(const FrontEndInput& input, int threads) {
             counters.frustum += count;
             continue;
         }
+        if (count > 0) in_view_.push_back(i);
         for (std::uint32_t first = 0; first < count;) {
             const std::uint32_t part = std::min(size - filled, count - first);
             ranges_.push_back({i, first, part});
@@ -198,27 +200,9 @@ void FrontEnd::make_chunks(const FrontEndInput& input, int threads) {
     if (chunks_.size() < chunk_begin_.size() - 1) chunks_.resize(chunk_begin_.size() - 1);
 }
 
-void FrontEnd::set_up(const FrontEndInput& input, const Range& range, Scratch& scratch, BinnedChunk& chunk,
-                      FrontCounters& sum) const {
+void FrontEnd::set_up(const FrontEndInput& input, const Range& range, BinnedChunk& chunk, FrontCounters& sum) const {
     const InstanceView& instance = input.frame.instances[range.instance];
     const ProjectionView& picture = input.frame.projection;
-    const std::uint32_t* indices = instance.mesh.triangles + 3 * std::size_t{range.first};
-    const std::uint32_t corners = 3 * range.count;
-    std::uint32_t low = 0, high = 0;
-    input.kernels.index_range(indices, corners, low, high);
-
-    // Vertices in a row are transformed once each; scattered ones once per corner.
-    const bool in_a_row = high - low < corners;
-    VertexJob vertices{};
-    vertices.instance = &instance;
-    vertices.width = picture.width;
-    vertices.height = picture.height;
-    vertices.indices = in_a_row ? nullptr : indices;
-    vertices.first = low;
-    vertices.count = in_a_row ? high - low + 1 : corners;
-    vertices.out = scratch.vertices.reserve(vertices.count + kMaxLanes);
-    input.kernels.transform(vertices);
-
     ChunkBuilder builder(chunk, input.grid, picture);
     const MaterialView& material = input.shading.materials[instance.material];
     SetupJob& job = builder.job;
@@ -237,9 +221,7 @@ void FrontEnd::set_up(const FrontEndInput& input, const Range& range, Scratch& s
     job.sample = input.samples[0];
     job.tile_shift = input.grid.shift;
     job.tile_columns = input.grid.columns;
-    job.vertices = scratch.vertices.data();
-    job.indices = in_a_row ? indices : scratch.count_up(corners);
-    job.vertex_base = in_a_row ? low : 0;
+    job.vertices = vertices_.by_instance()[range.instance];
     input.kernels.setup(job);
     chunk.small_count = job.arrays.small_count;
     chunk.large_count = job.arrays.large_count;
@@ -248,32 +230,22 @@ void FrontEnd::set_up(const FrontEndInput& input, const Range& range, Scratch& s
 }
 
 void FrontEnd::build_chunk(const FrontEndInput& input, std::size_t index) {
-    std::unique_ptr<Scratch> scratch;
-    {
-        const std::lock_guard lock(mutex_);
-        if (!scratch_.empty()) {
-            scratch = std::move(scratch_.back());
-            scratch_.pop_back();
-        }
-    }
-    if (!scratch) scratch = std::make_unique<Scratch>();
     BinnedChunk& chunk = chunks_[index];
     chunk.small_count = chunk.large_count = chunk.run_count = 0;
     FrontCounters sum;
-    for (std::size_t r = chunk_begin_[index]; r < chunk_begin_[index + 1]; ++r)
-        set_up(input, ranges_[r], *scratch, chunk, sum);
+    for (std::size_t r = chunk_begin_[index]; r < chunk_begin_[index + 1]; ++r) set_up(input, ranges_[r], chunk, sum);
     ChunkBuilder builder(chunk, input.grid, input.frame.projection);
     builder.job.arrays.small_count = chunk.small_count;
     builder.job.arrays.large_count = chunk.large_count;
     builder.job.arrays.run_count = chunk.run_count;
     builder.sort_runs();
     const std::lock_guard lock(mutex_);
-    scratch_.push_back(std::move(scratch));
     add(counters, sum);
 }
 
 void FrontEnd::run(const FrontEndInput& input, Arena& arena) {
     make_chunks(input, arena.threads());
+    vertices_.transform(input.frame, in_view_, input.kernels, arena, input.checkpoint);
     arena.for_each(chunk_begin_.size() - 1, [&](std::size_t chunk) {
         input.checkpoint();
         build_chunk(input, chunk);

@@ -1,12 +1,11 @@
-// The front end: chunks of triangles are transformed, set up and binned to tiles in parallel, each chunk
-// into a store of its own, without locks. Tiles read the chunks in their order, which is that of
+// The front end: vertices are transformed, then chunks of triangles set up and binned to tiles in parallel, each
+// chunk into a store of its own, without locks. Tiles read the chunks in their order, which is that of
 // submission.
 #pragma once
 
 #include "core/parallel.h"
 #include "geometry/frame.h"
-#include "raster/buffer.h"
-#include "raster/kernels.h"
+#include "raster/frame_vertices.h"
 
 #include <functional>
 #include <mutex>
@@ -51,6 +50,9 @@ class FrontEnd {
     // What the chunks have for a tile, in the order of submission; returns how many triangles.
     std::uint32_t bins_of(int tile, std::vector<TileBin>& bins) const;
 
+    // By instance; nothing for those that are not in view.
+    const InstanceVertices* vertices() const { return vertices_.by_instance(); }
+
     FrontCounters counters;
     std::uint64_t triangles = 0;
 
@@ -59,27 +61,17 @@ class FrontEnd {
     struct Range {
         std::uint32_t instance, first, count;
     };
-    struct Scratch {
-        Buffer<TransformedVertex> vertices;
-        std::vector<std::uint32_t> numbers;
-
-        // 0, 1, 2, ...: at least `count`.
-        const std::uint32_t* count_up(std::size_t count) {
-            for (std::size_t i = numbers.size(); i < count; ++i) numbers.push_back(static_cast<std::uint32_t>(i));
-            return numbers.data();
-        }
-    };
 
     void make_chunks(const FrontEndInput& input, int threads);
     void build_chunk(const FrontEndInput& input, std::size_t chunk);
-    void set_up(const FrontEndInput& input, const Range& range, Scratch& scratch, BinnedChunk& chunk,
-                FrontCounters& sum) const;
+    void set_up(const FrontEndInput& input, const Range& range, BinnedChunk& chunk, FrontCounters& sum) const;
 
+    FrameVertices vertices_;
+    std::vector<std::uint32_t> in_view_;  // instances
     std::vector<Range> ranges_;
     std::vector<std::size_t> chunk_begin_;  // first range of every chunk, and the end
     std::vector<BinnedChunk> chunks_;
     std::mutex mutex_;
-    std::vector<std::unique_ptr<Scratch>> scratch_;
 };
 
 }  // namespace tessera

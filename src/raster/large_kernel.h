@@ -128,7 +128,7 @@ __attribute__((noinline)) void fill_special(VisibilityJob& job, LargeFill& f, co
     if (kKind == FillKind::kCutOut) {
         const InstanceView& instance = job.source->instances[f.t.instance];
         layout = layout_of(*job.source, instance);
-        make_surfaces({job.source, &instance, layout, &f.t.triangle, 1, record});
+        make_surfaces({job.source, f.t.instance, layout, &f.t.triangle, 1, record});
     }
     fill_blocks<kKind, true>(job, f, box, record, &layout);
 }

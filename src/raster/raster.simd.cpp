@@ -8,8 +8,8 @@ void shade_tile(const ShadeJob& job);
 void shade_points(const ShadeJob& job);
 
 const RasterKernels& raster_kernels() {
-    static constexpr RasterKernels kKernels{&index_range,   &transform,  &setup,        &visibility,   &find_visible,
-                                            &make_surfaces, &shade_tile, &shade_points, &develop_tile, &label_tile};
+    static constexpr RasterKernels kKernels{&transform,  &setup,        &visibility,   &find_visible, &make_surfaces,
+                                            &shade_tile, &shade_points, &develop_tile, &label_tile};
     return kKernels;
 }
 

@@ -22,13 +22,19 @@ inline constexpr int kMaxLanes = 16;
 
 // --- the front end ----------------------------------------------------------------------------
 
-// A vertex in the picture: position (x, y) in 1/256 pixel before snapping, z / w, all zero where its
-// triangles need the scalar path anyway, and the bits of its out-codes. 16 bytes: one load.
+// A vertex in the picture: position (x, y) in 1/256 pixel before snapping, z / w and 1 / w. Where its
+// triangles need the scalar path: 0, 0, the bits of its out-codes, and 0. 16 bytes: one load.
 struct TransformedVertex {
     float numbers[4];
 };
 // Besides the out-codes: coordinates beyond any use.
 inline constexpr std::uint32_t kUnusable = 128;
+
+// The vertices of an instance, for as long as the frame is drawn.
+struct InstanceVertices {
+    const TransformedVertex* vertices;
+    const std::uint32_t* corners;  // three per triangle, into `vertices`
+};
 
 // Transforms `count` vertices: consecutive ones from `first`, or where `indices` is set those.
 struct VertexJob {
@@ -100,10 +106,7 @@ struct SetupJob {
     bool masks;       // small triangles may become masks
     SamplePosition sample;
     int tile_shift, tile_columns;
-    const TransformedVertex* vertices;
-    // Three per triangle, into `vertices` after taking away vertex_base.
-    const std::uint32_t* indices;
-    std::uint32_t vertex_base;
+    InstanceVertices vertices;
     ChunkArrays arrays;
     FrontCounters counters;
     // Makes room for kMaxLanes more triangles of each kind and their runs.
@@ -133,6 +136,7 @@ struct TileTriangle {
 // What kernels need to make surface records and shade them.
 struct SurfaceSource {
     const InstanceView* instances;
+    const InstanceVertices* vertices;  // by instance
     const ShadingContext* shading;
     ProjectionView projection;
     // The scalar path, for triangles that are clipped.
@@ -181,7 +185,7 @@ struct VisibleJob {
 // Makes the surface records of triangles of one instance, one after the other.
 struct SurfaceJob {
     const SurfaceSource* source;
-    const InstanceView* instance;
+    std::uint32_t instance;
     SurfaceLayout layout;
     const std::uint32_t* triangles;  // within the instance
     std::uint32_t count;
@@ -233,8 +237,6 @@ struct LabelJob {
 };
 
 struct RasterKernels {
-    // The lowest and highest of `count` indices.
-    void (*index_range)(const std::uint32_t* indices, std::uint32_t count, std::uint32_t& low, std::uint32_t& high);
     void (*transform)(const VertexJob& job);
     void (*setup)(SetupJob& job);
     void (*visibility)(VisibilityJob& job);

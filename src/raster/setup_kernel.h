@@ -10,16 +10,47 @@ namespace tessera::TESSERA_ISA_NAMESPACE {
 // Triangles whose box is smaller than 64 pixels have areas and edges that are exact in 32 bits.
 inline constexpr std::int32_t kExactSide = 64 * 256;
 
-TESSERA_INLINE void count_lanes(std::uint64_t& counter, Mask m) {
-    counter += static_cast<std::uint64_t>(__builtin_popcount(mask_bits(m)));
+TESSERA_INLINE void count_lanes(std::uint64_t& counter, std::uint32_t lanes) {
+    counter += static_cast<std::uint64_t>(__builtin_popcount(lanes));
 }
 
-// Corner k of kLanes triangles, three indices each.
-TESSERA_INLINE void load_corner(const TransformedVertex* vertices, const std::uint32_t* indices, int k, Float& x,
-                                Float& y, Float& z, Uint& code) {
-    Float code_bits;
-    load_records([&](int lane) { return vertices[indices[3 * lane + k]].numbers; }, x, y, z, code_bits);
-    code = as_uint(code_bits);
+// The corners of kLanes triangles as they were transformed.
+struct SetupCorners {
+    Float x[3], y[3], z[3], inverse_w[3];
+
+    // Three indices each.
+    TESSERA_INLINE SetupCorners(const TransformedVertex* vertices, const std::uint32_t* indices) {
+        TESSERA_UNROLL(3)
+        for (int k = 0; k < 3; ++k)
+            load_records([&](int lane) { return vertices[indices[3 * lane + k]].numbers; }, x[k], y[k], z[k],
+                         inverse_w[k]);
+    }
+    TESSERA_INLINE Mask plain(int k) const { return inverse_w[k] > Float(0.0f); }
+    TESSERA_INLINE Mask all_plain() const { return min(min(inverse_w[0], inverse_w[1]), inverse_w[2]) > Float(0.0f); }
+};
+
+// What is to become of triangles that are not plainly inside.
+struct Rejects {
+    std::uint32_t unusable, outside;  // lanes; the former first, the rest to the scalar path
+};
+
+// Triangles with a corner that is not plain. Those of plain corners have codes only where no rounding can have brought
+// them there, so that what is left out here the scalar path leaves out, too.
+TESSERA_INLINE Rejects reject_special(const SetupCorners& c, Float width, Float height) {
+    Uint every(~0u), some(0u);
+    for (int k = 0; k < 3; ++k) {
+        const Float zero(0.0f);
+        const Uint none(0u);
+        const Uint picture =
+            select(c.x[k] < zero, Uint(kOutLeft), none) | select(c.x[k] > width, Uint(kOutRight), none) |
+            select(c.y[k] < zero, Uint(kOutTop), none) | select(c.y[k] > height, Uint(kOutBottom), none) |
+            select(c.z[k] < zero, Uint(kOutFar), none);
+        const Mask plain = c.plain(k);
+        every &= select(plain, picture, as_uint(c.z[k]));
+        some |= select(plain, none, as_uint(c.z[k]));
+    }
+    return {mask_bits((some & Uint(kUnusable)) != Uint(0u)),
+            mask_bits((every & Uint(~static_cast<std::uint32_t>(kOutGuard))) != Uint(0u))};
 }
 
 // The samples that a box may hold.
@@ -40,28 +71,33 @@ struct LaneEdge {
     }
 };
 
+// Four rows of coverage, a bit each: of all eight columns, or of the first four. The edges go on to the next row.
+template <int kColumns>
+TESSERA_INLINE Uint cover_rows(LaneEdge (&edges)[3]) {
+    Uint covered(0u);
+    TESSERA_UNROLL(4)
+    for (int row = 0; row < 4; ++row) {
+        Int e[3] = {edges[0].e, edges[1].e, edges[2].e};
+        TESSERA_UNROLL(8)
+        for (int column = 0; column < kColumns; ++column) {
+            covered |= select(or3(e[0], e[1], e[2]) < Int(0), Uint(0u), Uint(1u << (kBlockSide * row + column)));
+            for (int k = 0; k < 3; ++k) e[k] += edges[k].a;
+        }
+        for (LaneEdge& edge : edges) edge.e += edge.b;
+    }
+    return covered;
+}
+
 // Coverage of 8x8 samples from (x, y) on by triangles that run clockwise on the screen, a bit each.
 // `wide` and `high`: whether any of the triangles reaches beyond four columns or rows.
 TESSERA_INLINE void cover_small(const Int (&x)[3], const Int (&y)[3], Int first_x, Int first_y, bool wide, bool high,
                                 Uint (&rows)[2]) {
-    LaneEdge e0(x[0], y[0], x[1], y[1], first_x, first_y), e1(x[1], y[1], x[2], y[2], first_x, first_y),
-        e2(x[2], y[2], x[0], y[0], first_x, first_y);
-    const int columns = wide ? 8 : 4;
+    LaneEdge edges[3] = {{x[0], y[0], x[1], y[1], first_x, first_y},
+                         {x[1], y[1], x[2], y[2], first_x, first_y},
+                         {x[2], y[2], x[0], y[0], first_x, first_y}};
+    rows[0] = wide ? cover_rows<8>(edges) : cover_rows<4>(edges);
     rows[1] = Uint(0u);
-    for (int half = 0; half < (high ? 2 : 1); ++half) {
-        Uint covered(0u);
-        for (int row = 0; row < 4; ++row) {
-            Int r0 = e0.e, r1 = e1.e, r2 = e2.e;
-            for (int column = 0; column < columns; column += 4)
-                for (int i = 0; i < 4; ++i) {
-                    const std::uint32_t bit = 1u << (8 * row + column + i);
-                    covered |= select(or3(r0, r1, r2) < Int(0), Uint(0u), Uint(bit));
-                    r0 += e0.a, r1 += e1.a, r2 += e2.a;
-                }
-            e0.e += e0.b, e1.e += e1.b, e2.e += e2.b;
-        }
-        rows[half] = covered;
-    }
+    if (high) rows[1] = wide ? cover_rows<8>(edges) : cover_rows<4>(edges);
 }
 
 // Adds `count` small triangles from `first` on to a tile: to its last run, where they follow on it.
@@ -80,54 +116,67 @@ TESSERA_INLINE void add_run(ChunkArrays& c, std::uint32_t tile, std::uint32_t fi
 inline void setup(SetupJob& job) {
     constexpr int kWidth = kLanes<Float>;
     const Int last_x(static_cast<std::int32_t>(job.width) - 1), last_y(static_cast<std::int32_t>(job.height) - 1);
-    alignas(64) float made[kWidth][sizeof(SmallTriangle) / sizeof(float)];
-    // So that indices count from the first vertex of the mesh.
-    const TransformedVertex* const vertices = job.vertices - job.vertex_base;
+    alignas(64) float depths[kWidth][8];
+    const Int width(static_cast<std::int32_t>(job.width) * 256), height(static_cast<std::int32_t>(job.height) * 256);
     std::uint32_t rest_indices[3 * kWidth];
     alignas(64) std::int32_t vx[3][kWidth], vy[3][kWidth], tile_x[2][kWidth], tile_y[2][kWidth];
     alignas(64) std::int32_t tiles[kWidth];
+    // Lanes whose front is clockwise as a viewer sees it, and those of which either side is drawn.
+    const std::uint32_t turned = job.instance->handedness > 0 ? 0 : ~0u, either = job.double_sided ? ~0u : 0;
     for (std::uint32_t t = 0; t < job.count; t += kWidth) {
         const std::uint32_t left = job.count - t;
-        const Mask valid = first_n<Float>(left < std::uint32_t{kWidth} ? static_cast<int>(left) : kWidth);
-        const std::uint32_t* indices = job.indices + 3 * std::size_t{t};
+        // Which lanes are what: as bits, for it takes many operations on few of them.
+        std::uint32_t valid = (1u << kWidth) - 1;
+        const std::uint32_t* indices = job.vertices.corners + 3 * (std::size_t{job.first} + t);
         if (left < std::uint32_t{kWidth}) {  // the last triangle repeated
+            valid = (1u << left) - 1;
             for (std::uint32_t i = 0; i < 3 * std::uint32_t{kWidth}; ++i)
                 rest_indices[i] = indices[i < 3 * left ? i : 3 * (left - 1) + i % 3];
             indices = rest_indices;
         }
+        const SetupCorners corners(job.vertices.vertices, indices);
         PictureVertex<Float> p[3];
-        Float z[3];
-        Uint code[3];
-        for (int k = 0; k < 3; ++k) load_corner(vertices, indices, k, p[k].x, p[k].y, z[k], code[k]);
-        const Uint every = code[0] & code[1] & code[2], some = or3(code[0], code[1], code[2]);
-        const Mask usable = valid & ((some & Uint(kUnusable)) == Uint(0u));
-        const Mask outside = usable & ((every & Uint(~static_cast<std::uint32_t>(kOutGuard))) != Uint(0u));
-        const Mask clipped = usable & !outside & ((some & Uint(kMustClip)) != Uint(0u));
-        const Mask inside = usable & !outside & !clipped;
-
-        for (int k = 0; k < 3; ++k) {
-            p[k].snapped_x = nearest_int(p[k].x);
-            p[k].snapped_y = nearest_int(p[k].y);
-        }
+        for (int k = 0; k < 3; ++k)
+            p[k] = {corners.x[k], corners.y[k], nearest_int(corners.x[k]), nearest_int(corners.y[k])};
         const Int low_x = min(min(p[0].snapped_x, p[1].snapped_x), p[2].snapped_x);
         const Int high_x = max(max(p[0].snapped_x, p[1].snapped_x), p[2].snapped_x);
         const Int low_y = min(min(p[0].snapped_y, p[1].snapped_y), p[2].snapped_y);
         const Int high_y = max(max(p[0].snapped_y, p[1].snapped_y), p[2].snapped_y);
-        const Mask exact = inside & (max(high_x - low_x, high_y - low_y) < Int(kExactSide));
+        const Float highest = max(max(corners.z[0], corners.z[1]), corners.z[2]);
+        // Outside a plane of the view volume: for certain where beyond it in the picture. What touches it may be so,
+        // too, and rounded; the scalar path knows.
+        std::uint32_t inside = valid & mask_bits(corners.all_plain()), outside = 0, slow = 0;
+        if (const std::uint32_t special = valid & ~inside) {
+            const Rejects r = reject_special(corners, to_float(width), to_float(height));
+            outside = special & ~r.unusable & r.outside;
+            slow = special & ~r.unusable & ~r.outside;
+            count_lanes(job.counters.degenerate, special & r.unusable);
+        }
+        const Int from_borders =
+            or3(high_x - Int(1), width - Int(1) - low_x, high_y - Int(1)) | (height - Int(1) - low_y);
+        if (const std::uint32_t border = inside & mask_bits((from_borders < Int(0)) | (highest <= Float(0.0f)))) {
+            const Int beyond = or3(high_x, width - low_x, high_y) | (height - low_y);
+            const std::uint32_t certain = border & mask_bits((beyond < Int(0)) | (highest < Float(0.0f)));
+            outside |= certain;
+            slow |= border & ~certain;
+            inside &= ~border;
+        }
+        if (outside) count_lanes(job.counters.frustum, outside);
+        if (!(inside | slow)) continue;
+        const std::uint32_t exact = inside & mask_bits(max(high_x - low_x, high_y - low_y) < Int(kExactSide));
+        slow |= inside & ~exact;
         const Int dx1 = p[1].snapped_x - p[0].snapped_x, dy1 = p[1].snapped_y - p[0].snapped_y;
         const Int dx2 = p[2].snapped_x - p[0].snapped_x, dy2 = p[2].snapped_y - p[0].snapped_y;
         // Meaningless, but harmless, where not exact.
         const Int area = as_int(as_uint(dx1) * as_uint(dy2) - as_uint(dx2) * as_uint(dy1));
-        const Mask flat = exact & (area == Int(0));
         const Mask counter_clockwise = area < Int(0);
-        const Mask front = job.instance->handedness > 0 ? counter_clockwise : !counter_clockwise;
-        const Mask facing = job.double_sided ? exact : exact & front;
-        Mask keep = facing & !flat;
-        count_lanes(job.counters.frustum, outside);
-        count_lanes(job.counters.degenerate, (valid & !usable) | flat);
-        count_lanes(job.counters.backface, exact & !flat & !facing);
-        const std::uint32_t slow = mask_bits(clipped | (inside & !exact));
-        if (!(mask_bits(keep) | slow)) continue;
+        const std::uint32_t flat = exact & mask_bits(area == Int(0));
+        const std::uint32_t front = mask_bits(counter_clockwise) ^ turned;
+        const std::uint32_t facing = exact & (front | either);
+        std::uint32_t kept = facing & ~flat;
+        count_lanes(job.counters.degenerate, flat);
+        count_lanes(job.counters.backface, exact & ~flat & ~facing);
+        if (!(kept | slow)) continue;
 
         SampleBox box;
         box.left = max((low_x + Int(255 - job.sample.x)) >> 8, Int(0));
@@ -135,11 +184,10 @@ inline void setup(SetupJob& job) {
         box.right = min((high_x - Int(job.sample.x)) >> 8, last_x);
         box.bottom = min((high_y - Int(job.sample.y)) >> 8, last_y);
         if (job.one_sample) {
-            const Mask reached = !((box.left > box.right) | (box.top > box.bottom));
-            count_lanes(job.counters.no_sample, keep & !reached);
-            keep &= reached;
+            const std::uint32_t missed = kept & mask_bits(((box.right - box.left) | (box.bottom - box.top)) < Int(0));
+            count_lanes(job.counters.no_sample, missed);
+            kept &= ~missed;
         }
-        std::uint32_t kept = mask_bits(keep);
         if (!(kept | slow)) continue;
         if (job.arrays.room() < kMaxLanes) job.reserve(job);
 
@@ -152,45 +200,48 @@ inline void setup(SetupJob& job) {
         Uint rows[2];
         if (job.masks && kept) {
             // Beyond the picture too, so that a mask does not depend on its neighbours' sizes.
-            const Int width = ((high_x - Int(job.sample.x)) >> 8) - box.left;
-            const Int height = ((high_y - Int(job.sample.y)) >> 8) - box.top;
-            const Mask fits = keep & (max(width, height) < Int(kBlockSide));
-            if (any(fits)) {
-                const bool wide = any(fits & (width > Int(3))), high = any(fits & (height > Int(3)));
+            const Int columns = ((high_x - Int(job.sample.x)) >> 8) - box.left;
+            const Int lines = ((high_y - Int(job.sample.y)) >> 8) - box.top;
+            if (const std::uint32_t fits = kept & mask_bits(max(columns, lines) < Int(kBlockSide))) {
+                const bool wide = fits & mask_bits(columns > Int(3)), high = fits & mask_bits(lines > Int(3));
                 cover_small(x, y, (box.left << 8) + Int(job.sample.x), (box.top << 8) + Int(job.sample.y), wide, high,
                             rows);
-                const Mask covers = fits & ((rows[0] | rows[1]) != Uint(0u));
-                small = mask_bits(covers);
-                const std::uint32_t nothing = mask_bits(fits) & ~small;
-                job.counters.no_sample += static_cast<std::uint64_t>(__builtin_popcount(nothing));
+                small = fits & mask_bits((rows[0] | rows[1]) != Uint(0u));
+                const std::uint32_t nothing = fits & ~small;
+                count_lanes(job.counters.no_sample, nothing);
                 kept &= ~nothing;
                 if (!(kept | slow)) continue;
             }
         }
+        ChunkArrays& c = job.arrays;
+        std::uint32_t next_small = c.small_count;
         if (kept) {
-            const DepthPlane<Float> depth = depth_plane(p, z);
-            const Uint number = as_uint(iota<Int>()) + Uint(job.first + t);
-            store_records([&](int i) { return made[i]; }, as_float(depth.anchor_x), as_float(depth.anchor_y),
-                          depth.depth, depth.ddx);
-            store_records([&](int i) { return made[i] + 4; }, depth.ddy, depth.lowest, depth.highest,
-                          as_float((box.top << 16) | box.left));
+            const DepthPlane<Float> depth = depth_plane(p, corners.z);
             if (small) {
-                store_records([&](int i) { return made[i] + 8; }, as_float(rows[0]), as_float(rows[1]),
-                              as_float(number), as_float(Uint(job.instance_index)));
+                const Mask covers = mask_of_bits<Mask>(small);
+                // Whole vectors: those of lanes that are not small lie behind the last, where there is room.
+                float* const to = reinterpret_cast<float*>(c.small + c.small_count);
+                const auto put = [&](int at, Float n0, Float n1, Float n2, Float n3) TESSERA_INLINE_LAMBDA {
+                    constexpr int kNumbers = sizeof(SmallTriangle) / sizeof(float);
+                    store_records([&](int i) { return to + kNumbers * i + at; }, compress(n0, covers),
+                                  compress(n1, covers), compress(n2, covers), compress(n3, covers));
+                };
+                put(0, as_float(depth.anchor_x), as_float(depth.anchor_y), depth.depth, depth.ddx);
+                put(4, depth.ddy, depth.lowest, depth.highest, as_float((box.top << 16) | box.left));
+                put(8, as_float(rows[0]), as_float(rows[1]), as_float(as_uint(iota<Int>()) + Uint(job.first + t)),
+                    as_float(Uint(job.instance_index)));
+                const auto count = static_cast<std::uint32_t>(__builtin_popcount(small));
+                c.small_count += count;
+                job.counters.small += count;
                 const Int first_x = box.left >> job.tile_shift, first_y = box.top >> job.tile_shift;
                 const Int last_tile_x = box.right >> job.tile_shift, last_tile_y = box.bottom >> job.tile_shift;
                 const Int tile = first_y * Int(job.tile_columns) + first_x;
                 const Mask spread = (first_x != last_tile_x) | (first_y != last_tile_y);
-                const int any_small = __builtin_ctz(small);
                 store(tiles, tile);
-                if (small == (kept | slow) && !(mask_bits(spread | (tile != Int(tiles[any_small]))) & small)) {
+                const std::int32_t first_tile = tiles[__builtin_ctz(small)];
+                if (small == (kept | slow) && none(covers & (spread | (tile != Int(first_tile))))) {
                     // All of them small and in one tile, as most often.
-                    ChunkArrays& c = job.arrays;
-                    const auto count = static_cast<std::uint32_t>(__builtin_popcount(small));
-                    add_run(c, static_cast<std::uint32_t>(tiles[any_small]), c.small_count, count);
-                    for (std::uint32_t rest = small; rest; rest &= rest - 1)
-                        __builtin_memcpy(&c.small[c.small_count++], made[__builtin_ctz(rest)], sizeof(SmallTriangle));
-                    job.counters.small += count;
+                    add_run(c, static_cast<std::uint32_t>(first_tile), next_small, count);
                     continue;
                 }
                 store(tile_x[0], first_x);
@@ -198,27 +249,29 @@ inline void setup(SetupJob& job) {
                 store(tile_x[1], last_tile_x);
                 store(tile_y[1], last_tile_y);
             }
-            if (kept & ~small)
+            if (kept & ~small) {
+                store_records([&](int i) { return depths[i]; }, as_float(depth.anchor_x), as_float(depth.anchor_y),
+                              depth.depth, depth.ddx);
+                store_records([&](int i) { return depths[i] + 4; }, depth.ddy, depth.lowest, depth.highest,
+                              depth.highest);
                 for (int k = 0; k < 3; ++k) {
                     store(vx[k], x[k]);
                     store(vy[k], y[k]);
                 }
+            }
         }
         for (std::uint32_t rest = kept | slow; rest; rest &= rest - 1) {
             const int i = __builtin_ctz(rest);
             const std::uint32_t bit = rest & (0u - rest);
-            ChunkArrays& c = job.arrays;
             if (small & bit) {
-                const std::uint32_t n = c.small_count++;
-                __builtin_memcpy(&c.small[n], made[i], sizeof(SmallTriangle));
                 for (std::int32_t row = tile_y[0][i]; row <= tile_y[1][i]; ++row)
                     for (std::int32_t column = tile_x[0][i]; column <= tile_x[1][i]; ++column)
-                        add_run(c, static_cast<std::uint32_t>(row * job.tile_columns + column), n, 1);
-                ++job.counters.small;
+                        add_run(c, static_cast<std::uint32_t>(row * job.tile_columns + column), next_small, 1);
+                ++next_small;
             } else if (kept & bit) {
                 LargeTriangle& r = c.large[c.large_count++];
                 for (int k = 0; k < 3; ++k) r.v[k] = {vx[k][i], vy[k][i]};
-                __builtin_memcpy(&r.depth, made[i], sizeof(r.depth));
+                __builtin_memcpy(&r.depth, depths[i], sizeof(r.depth));
                 r.triangle = job.first + t + static_cast<std::uint32_t>(i);
                 r.instance = job.instance_index;
                 ++job.counters.large;

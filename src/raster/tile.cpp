@@ -28,7 +28,7 @@ TileTask::TileTask(const Frame& f, const ShadingContext& s, const RasterSettings
       grid(g),
       front(e),
       kernels(raster_kernels(o.isa)),
-      source{f.instances.data(), &s, f.projection, &make_record} {
+      source{f.instances.data(), e.vertices(), &s, f.projection, &make_record} {
     // The first instance that each one may be shaded with, by material.
     std::vector<std::vector<std::uint32_t>> kinds;
     for (std::uint32_t i = 0; i < f.instances.size(); ++i) {

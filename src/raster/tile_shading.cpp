@@ -29,7 +29,7 @@ void Tile::make_records() {
         const std::uint32_t instance = triangles_[visible_[first] - 1].instance;
         SurfaceJob job{};
         job.source = &task_->source;
-        job.instance = &task_->frame.instances[instance];
+        job.instance = instance;
         job.layout = task_->layouts[instance];
         const auto floats = static_cast<std::size_t>(surface_floats(job.layout));
         std::uint32_t end = first;

@@ -7,34 +7,6 @@
 
 namespace tessera::TESSERA_ISA_NAMESPACE {
 
-inline void index_range(const std::uint32_t* indices, std::uint32_t count, std::uint32_t& low, std::uint32_t& high) {
-    constexpr std::uint32_t kWidth = kLanes<Float>;
-    std::uint32_t least = indices[0], most = indices[0], i = 0;
-    if (count >= kWidth) {
-        // Indices are below 2^31.
-        Int a = as_int(load<Uint>(indices)), b = a;
-        for (; i + kWidth <= count; i += kWidth) {
-            const Int v = as_int(load<Uint>(indices + i));
-            a = min(a, v);
-            b = max(b, v);
-        }
-        std::int32_t lanes[2][kWidth];
-        store(lanes[0], a);
-        store(lanes[1], b);
-        for (std::uint32_t lane = 0; lane < kWidth; ++lane) {
-            const auto x = static_cast<std::uint32_t>(lanes[0][lane]), y = static_cast<std::uint32_t>(lanes[1][lane]);
-            if (x < least) least = x;
-            if (y > most) most = y;
-        }
-    }
-    for (; i < count; ++i) {
-        if (indices[i] < least) least = indices[i];
-        if (indices[i] > most) most = indices[i];
-    }
-    low = least;
-    high = most;
-}
-
 // An array of records of `stride` floats that may be read four floats at a time: the last record, after
 // which memory may end, is read from a copy.
 template <int kNumbers>
@@ -53,17 +25,31 @@ struct RecordArray {
     }
 };
 
-TESSERA_INLINE void store_transformed(const VertexJob& job, const Vec3T<Float>& position, TransformedVertex* out) {
-    const ClipVertex<Float> clip = to_clip(job.instance->object_to_clip, position);
+// What says why a vertex is not plain (see transform()).
+TESSERA_INLINE Uint codes_of(const ClipVertex<Float>& clip) {
     const Float largest(kLargestCoordinate);
     const Mask usable =
         (abs(clip.x) < largest) & (abs(clip.y) < largest) & (abs(clip.z) < largest) & (abs(clip.w) < largest);
-    const Uint code = select(usable, out_code(clip), Uint(kUnusable));
-    const Mask plain = (code & Uint(kMustClip | kUnusable)) == Uint(0u);
+    return select(usable, out_code(clip), Uint(kUnusable));
+}
+
+// A plain vertex is usable and within the near plane and the guard band; w > 0 but for matrices beyond reason,
+// whose triangles may as well take the scalar path.
+TESSERA_INLINE void store_transformed(const VertexJob& job, const Vec3T<Float>& position, TransformedVertex* out) {
+    const ClipVertex<Float> clip = to_clip(job.instance->object_to_clip, position);
+    const Float zero(0.0f), largest(kLargestCoordinate), guard = clip.w * Float(kGuardBand);
+    const Float x = abs(clip.x), y = abs(clip.y);
+    const Mask plain = (clip.w > zero) & (clip.w < largest) & (clip.z <= clip.w) & (abs(clip.z) < largest) &
+                       (x <= guard) & (y <= guard) & (x < largest) & (y < largest);
     const PictureVertex<Float> p = to_picture(clip, job.width, job.height);
-    const Float zero(0.0f);
-    store_records([&](int i) { return out[i].numbers; }, select(plain, p.x, zero), select(plain, p.y, zero),
-                  select(plain, clip.z / clip.w, zero), as_float(code));
+    Float numbers[4] = {p.x, p.y, clip.z / clip.w, Float(1.0f) / clip.w};
+    if (!all(plain)) {
+        numbers[0] = select(plain, numbers[0], zero);
+        numbers[1] = select(plain, numbers[1], zero);
+        numbers[2] = select(plain, numbers[2], as_float(codes_of(clip)));
+        numbers[3] = select(plain, numbers[3], zero);
+    }
+    store_records([&](int i) { return out[i].numbers; }, numbers[0], numbers[1], numbers[2], numbers[3]);
 }
 
 inline void transform(const VertexJob& job) {

@@ -132,30 +132,36 @@ TESSERA_INLINE void corner_numbers(const InstanceView& instance, const SurfaceLa
     if (l.depth >= 0) out[l.depth] = -transform_point(instance.object_to_camera, c.position).z;
 }
 
-// Vertex normals in camera space; where one has no direction, the triangle's own.
-template <class F>
-TESSERA_INLINE void camera_normals(const InstanceView& instance, const Corner<F> (&c)[3], Vec3T<F> (&n)[3]) {
+// Vertex normals in camera space; where one has no direction, the triangle's own, which `flat()` gives.
+template <class F, class Flat>
+TESSERA_INLINE void camera_normals(const InstanceView& instance, const Corner<F> (&c)[3], Vec3T<F> (&n)[3],
+                                   Flat&& flat) {
     MaskOf<F> usable[3];
     for (int i = 0; i < 3; ++i) {
         n[i] = transform_normal(instance.normal_to_camera, c[i].normal);
         usable[i] = has_direction(n[i]);
     }
     if (all(usable[0] & usable[1] & usable[2])) return;
-    const Vec3T<F> flat = geometric_normal(instance, c[0].position, c[1].position, c[2].position);
-    for (int i = 0; i < 3; ++i) n[i] = select3(usable[i], n[i], flat);
+    const Vec3T<F> own = flat();
+    for (int i = 0; i < 3; ++i) n[i] = select3(usable[i], n[i], own);
+}
+template <class F>
+TESSERA_INLINE void camera_normals(const InstanceView& instance, const Corner<F> (&c)[3], Vec3T<F> (&n)[3]) {
+    camera_normals(instance, c, n,
+                   [&] { return geometric_normal(instance, c[0].position, c[1].position, c[2].position); });
 }
 
-// Makes the planes; `emit(i, value)` receives float i of the record as surface_floats() counts them.
-template <class F, class Emit>
+// Makes the planes from snapped vertices and 1 / w; `emit(i, value)` receives float i of the record as surface_floats()
+// counts them. Of the corners' positions only the distance along the axis is read, and by `flat()`, as above.
+template <class F, class Flat, class Emit>
 TESSERA_INLINE void make_planes(const InstanceView& instance, const SurfaceLayout& l, const Corner<F> (&c)[3],
-                                const ClipVertex<F> (&v)[3], const PictureVertex<F> (&p)[3], F front, Emit&& emit) {
+                                const F (&inverse_w)[3], const PictureVertex<F> (&p)[3], F front, Flat&& flat,
+                                Emit&& emit) {
     const PlaneBasis<F> basis(p);
     emit(0, to_float(p[0].snapped_x));
     emit(1, to_float(p[0].snapped_y));
     emit(2, front);
     emit(3, l.tangent >= 0 ? c[0].tangent.w * F(instance.handedness) : F(1.0f));
-    F inverse_w[3];
-    for (int i = 0; i < 3; ++i) inverse_w[i] = F(1.0f) / v[i].w;
     const auto put = [&](int plane, const Plane<F>& q) {
         const int at = kSurfaceHeader + 3 * plane;
         emit(at, q.at_anchor);
@@ -164,11 +170,20 @@ TESSERA_INLINE void make_planes(const InstanceView& instance, const SurfaceLayou
     };
     put(0, basis.through(inverse_w[0], inverse_w[1], inverse_w[2]));
     Vec3T<F> normals[3];
-    if (l.normal >= 0) camera_normals(instance, c, normals);
+    if (l.normal >= 0) camera_normals(instance, c, normals, flat);
     F numbers[3][kMaxSurfacePlanes];
     for (int i = 0; i < 3; ++i) corner_numbers(instance, l, c[i], front, normals[i], numbers[i]);
     for (int k = 1; k < l.count; ++k)
         put(k, basis.through(numbers[0][k] * inverse_w[0], numbers[1][k] * inverse_w[1], numbers[2][k] * inverse_w[2]));
+}
+template <class F, class Emit>
+TESSERA_INLINE void make_planes(const InstanceView& instance, const SurfaceLayout& l, const Corner<F> (&c)[3],
+                                const ClipVertex<F> (&v)[3], const PictureVertex<F> (&p)[3], F front, Emit&& emit) {
+    F inverse_w[3];
+    for (int i = 0; i < 3; ++i) inverse_w[i] = F(1.0f) / v[i].w;
+    make_planes(
+        instance, l, c, inverse_w, p, front,
+        [&] { return geometric_normal(instance, c[0].position, c[1].position, c[2].position); }, emit);
 }
 
 // --- from planes to the surface point ----------------------------------------------------------

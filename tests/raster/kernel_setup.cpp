@@ -103,8 +103,7 @@ void set_up(const RasterKernels& kernels, const KernelMesh& mesh, std::uint32_t 
     while (1 << job.tile_shift < options.tile_side) ++job.tile_shift;
     job.tile_columns = (KernelMesh::kWidth + options.tile_side - 1) / options.tile_side;
     owner.tile_rows = (KernelMesh::kHeight + options.tile_side - 1) / options.tile_side;
-    job.vertices = transformed.data();
-    job.indices = view.mesh.triangles;
+    job.vertices = {transformed.data(), view.mesh.triangles};
     job.arrays.small_count = static_cast<std::uint32_t>(result.small.size());
     job.arrays.large_count = static_cast<std::uint32_t>(result.large.size());
     job.arrays.run_count = static_cast<std::uint32_t>(result.runs.size());

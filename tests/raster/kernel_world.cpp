@@ -182,15 +182,29 @@ KernelWorld::KernelWorld(Random& random) {
     projection.near = kNear;
 }
 
-void KernelWorld::add(const KernelMesh& mesh, std::uint32_t material) {
+void KernelWorld::add(const KernelMesh& mesh, std::uint32_t material, bool scattered) {
     const std::uint32_t before =
         instances_.empty() ? 0 : instances_.back().first_triangle + instances_.back().mesh.triangle_count;
     instances_.push_back(mesh.instance());
     instances_.back().material = material;
     instances_.back().first_triangle = before;
+    // By one lane, so that the kernels that read them are compared alone; they end where memory ends.
+    const MeshView& m = mesh.instance().mesh;
+    const std::uint32_t count = scattered ? 3 * m.triangle_count : m.vertex_count;
+    std::vector<TransformedVertex> padded(count + kMaxLanes);
+    raster_kernels(Isa::kScalar)
+        .transform({&mesh.instance(), projection.width, projection.height, scattered ? m.triangles : nullptr, 0, count,
+                    padded.data()});
+    padded.resize(count);
+    transformed_.push_back(std::make_unique<GuardedArray<TransformedVertex>>(padded));
+    for (std::size_t i = numbers_.size(); i < 3 * KernelMesh::kMostTriangles; ++i)
+        numbers_.push_back(static_cast<std::uint32_t>(i));
+    vertices_.push_back({transformed_.back()->data(), scattered ? numbers_.data() : m.triangles});
 }
 
-SurfaceSource KernelWorld::source() const { return {instances_.data(), &context, projection, &make_one_record}; }
+SurfaceSource KernelWorld::source() const {
+    return {instances_.data(), vertices_.data(), &context, projection, &make_one_record};
+}
 
 void make_one_record(const InstanceView& instance, std::uint32_t triangle, const ProjectionView& projection,
                      const SurfaceLayout& layout, float* record) {

@@ -57,6 +57,7 @@ inline constexpr Place kPlaces[] = {
 class KernelMesh {
   public:
     static constexpr int kWidth = 256, kHeight = 128;
+    static constexpr std::uint32_t kMostTriangles = 400;
 
     KernelMesh(Random& random, Place place, std::uint32_t triangles);
 
@@ -83,8 +84,8 @@ class KernelWorld {
     KernelWorld(const KernelWorld&) = delete;
     KernelWorld& operator=(const KernelWorld&) = delete;
 
-    // Adds an instance; its mesh must outlive the world.
-    void add(const KernelMesh& mesh, std::uint32_t material);
+    // Adds an instance; its mesh must outlive the world. `scattered`: its vertices transformed per corner.
+    void add(const KernelMesh& mesh, std::uint32_t material, bool scattered = false);
     SurfaceSource source() const;
     const std::vector<InstanceView>& instances() const { return instances_; }
     const MaterialView& material(std::uint32_t i) const { return materials_[i]; }
@@ -96,6 +97,9 @@ class KernelWorld {
     std::vector<MaterialView> materials_;
     std::vector<LightView> lights_;
     std::vector<InstanceView> instances_;
+    std::vector<std::unique_ptr<GuardedArray<TransformedVertex>>> transformed_;
+    std::vector<InstanceVertices> vertices_;
+    std::vector<std::uint32_t> numbers_;
 };
 
 // What the scalar path makes of a triangle, as the engine hands it to the kernels.

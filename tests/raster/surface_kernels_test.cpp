@@ -40,8 +40,9 @@ TEST_P(SurfaceKernels, SameRecords) {
     for (const Place place : kPlaces)
         for (int round = 0; round < 4; ++round) {
             KernelWorld world(random);
-            const KernelMesh mesh(random, place, 2 + random.below(60));
-            world.add(mesh, 0);
+            const KernelMesh mesh(random, place, 2 + random.below(60)), other(random, place, 3);
+            world.add(other, 1);
+            world.add(mesh, 0, round % 3 == 2);
             const SurfaceSource source = world.source();
             std::vector<std::uint32_t> triangles = visible(mesh, world.projection);
             if (triangles.empty()) continue;
@@ -50,9 +51,8 @@ TEST_P(SurfaceKernels, SameRecords) {
             for (const SurfaceLayout& layout : layouts(mesh, world)) {
                 const auto floats = static_cast<std::size_t>(surface_floats(layout));
                 GuardedArray<float> got((triangles.size() + kMaxLanes) * floats), want(got.size());
-                SurfaceJob job{
-                    &source,   &source.instances[0], layout, list.data(), static_cast<std::uint32_t>(triangles.size()),
-                    got.data()};
+                SurfaceJob job{&source,   1, layout, list.data(), static_cast<std::uint32_t>(triangles.size()),
+                               got.data()};
                 kernels().make_surfaces(job);
                 job.records = want.data();
                 scalar().make_surfaces(job);
@@ -63,7 +63,7 @@ TEST_P(SurfaceKernels, SameRecords) {
                 // One lane again, through the scalar path that the other engines take.
                 float record[kMaxSurfaceFloats];
                 for (std::size_t i = 0; i < triangles.size(); ++i) {
-                    make_one_record(source.instances[0], triangles[i], world.projection, layout, record);
+                    make_one_record(source.instances[1], triangles[i], world.projection, layout, record);
                     ASSERT_TRUE(same_floats(record, &want[i * floats],
                                             static_cast<std::size_t>(kSurfaceHeader + 3 * layout.count)))
                         << "triangle " << triangles[i];
@@ -100,9 +100,8 @@ struct ShadeSetting {
         const std::vector<std::uint32_t> triangles = visible(mesh, world.projection);
         const auto floats = static_cast<std::size_t>(surface_floats(layout));
         records.resize((triangles.size() + kMaxLanes) * floats);
-        const SurfaceJob job{
-            &source,       &source.instances[0], layout, triangles.data(), static_cast<std::uint32_t>(triangles.size()),
-            records.data()};
+        const SurfaceJob job{&source,       0, layout, triangles.data(), static_cast<std::uint32_t>(triangles.size()),
+                             records.data()};
         raster_kernels(Isa::kScalar).make_surfaces(job);
         seen = static_cast<std::uint32_t>(triangles.size());
         for (std::uint32_t i = 0; i < seen; ++i) record_of.push_back(static_cast<std::uint32_t>(i * floats));

@@ -1,6 +1,8 @@
-// Transform and index_range of every instruction set against one lane.
+// Transform of every instruction set against one lane, and one lane against the definitions.
 #include "raster/kernel_world.h"
 
+#include <bit>
+#include <cmath>
 #include <cstring>
 
 namespace tessera {
@@ -9,23 +11,6 @@ namespace {
 using namespace test;
 
 class VertexKernels : public KernelTest {};
-
-TEST_P(VertexKernels, IndexRangeOfEveryLength) {
-    Random random(1);
-    for (std::uint32_t count = 1; count < 70; ++count)
-        for (int round = 0; round < 20; ++round) {
-            GuardedArray<std::uint32_t> indices(count);
-            for (std::uint32_t i = 0; i < count; ++i)
-                indices[i] = round % 3 == 0 ? random.below(10) : random.below(0x7fffffff);
-            if (round % 4 == 0) indices[random.below(count)] = 0;
-            if (round % 4 == 1) indices[random.below(count)] = 0x7fffffff;
-            std::uint32_t low = 0, high = 0, want_low = 0, want_high = 0;
-            kernels().index_range(indices.data(), count, low, high);
-            scalar().index_range(indices.data(), count, want_low, want_high);
-            ASSERT_EQ(low, want_low) << count;
-            ASSERT_EQ(high, want_high) << count;
-        }
-}
 
 // Runs both and compares the vertices; what follows them may be written as far as the padding goes.
 void expect_same(const RasterKernels& got, const RasterKernels& want, VertexJob job, const std::string& what) {
@@ -68,6 +53,42 @@ TEST_P(VertexKernels, TransformScattered) {
                         "place " + std::to_string(static_cast<int>(place)));
         }
     }
+}
+
+// What one lane stores: the picture position, z / w and 1 / w, or the out-codes and nothing else.
+TEST(VertexByDefinition, PlainVerticesAndOutCodes) {
+    const FpEnvironment exact;
+    Random random(4);
+    int plain = 0, special = 0, unusable = 0;
+    for (const Place place : kPlaces) {
+        const KernelMesh mesh(random, place, 200);
+        const InstanceView& instance = mesh.instance();
+        std::vector<TransformedVertex> out(600 + kMaxLanes);
+        raster_kernels(Isa::kScalar)
+            .transform({&instance, KernelMesh::kWidth, KernelMesh::kHeight, nullptr, 0, 600, out.data()});
+        for (std::size_t i = 0; i < 600; ++i) {
+            const ClipVertex<float> c =
+                to_clip(instance.object_to_clip, Vec3T<float>::load(instance.mesh.positions + 3 * i));
+            const auto usable = [](float v) { return std::fabs(v) < kLargestCoordinate; };
+            float want[4] = {0, 0, 0, 0};
+            if (!usable(c.x) || !usable(c.y) || !usable(c.z) || !usable(c.w)) {
+                want[2] = std::bit_cast<float>(kUnusable);
+                ++unusable;
+            } else if ((out_code(c) & kMustClip) != 0 || !(c.w > 0)) {
+                want[2] = std::bit_cast<float>(out_code(c));
+                ++special;
+            } else {
+                const PictureVertex<float> p = to_picture(c, KernelMesh::kWidth, KernelMesh::kHeight);
+                want[0] = p.x, want[1] = p.y, want[2] = c.z / c.w, want[3] = 1.0f / c.w;
+                ASSERT_NE(want[3], 0.0f);
+                ++plain;
+            }
+            ASSERT_EQ(std::memcmp(want, out[i].numbers, sizeof want), 0) << "vertex " << i;
+        }
+    }
+    EXPECT_GT(plain, 4000);
+    EXPECT_GT(special, 100);
+    EXPECT_GT(unusable, 100);
 }
 
 INSTANTIATE_TEST_SUITE_P(Kernels, VertexKernels, vector_isas(), isa_name);

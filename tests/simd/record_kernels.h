@@ -13,6 +13,8 @@ struct RecordTable {
     // From consecutive records of three floats to three planes.
     void (*load_triples)(const float* records, float* planes);
     float (*least_lane)(const float* lanes);
+    // The lanes of the bits, moved to the front, and the bits of their mask.
+    std::uint32_t (*compress)(std::uint32_t bits, const float* lanes, float* front);
 };
 TESSERA_KERNELS(RecordTable, record_table);
 

@@ -34,10 +34,16 @@ void load_three(const float* records, float* planes) {
 
 float least(const float* lanes) { return least_lane(load<Float>(lanes)); }
 
+std::uint32_t move_to_front(std::uint32_t bits, const float* lanes, float* front) {
+    const Mask mask = mask_of_bits<Mask>(bits);
+    store(front, compress(load<Float>(lanes), mask));
+    return mask_bits(mask);
+}
+
 }  // namespace
 
 const RecordTable& record_table() {
-    static constexpr RecordTable kTable{kWidth, &load_four, &store_four, &load_three, &least};
+    static constexpr RecordTable kTable{kWidth, &load_four, &store_four, &load_three, &least, &move_to_front};
     return kTable;
 }
 

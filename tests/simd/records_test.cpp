@@ -118,6 +118,20 @@ TEST_P(RecordsTest, LeastLaneIsTheLeastWhereverItIs) {
     }
 }
 
+TEST_P(RecordsTest, CompressMovesTheLanesOfAnyMaskToTheFront) {
+    float values[kMostLanes], front[kMostLanes];
+    for (std::size_t i = 0; i < kMostLanes; ++i) values[i] = static_cast<float>(i) + 0.5f;
+    for (std::uint32_t bits = 0; bits < 1u << lanes(); ++bits) {
+        ASSERT_EQ(table().compress(bits, values, front), bits);
+        std::size_t next = 0;
+        for (std::size_t lane = 0; lane < lanes(); ++lane)
+            if (bits >> lane & 1) {
+                ASSERT_EQ(front[next], values[lane]) << bits;
+                ++next;
+            }
+    }
+}
+
 INSTANTIATE_TEST_SUITE_P(Simd, RecordsTest, testing::Values(Isa::kScalar, Isa::kSse4, Isa::kAvx2, Isa::kAvx512),
                          [](const auto& instance) { return std::string(name(instance.param)); });
 
