@@ -111,7 +111,7 @@ std::vector<KernelCase> visibility_cases() {
     };
     add("small_triangles", "sphere1m", true, Items::kTriangles);
     add("terrain_triangles", "terrain1m", true, Items::kTriangles);
-    add("medium_triangles", "terrain100k", true, Items::kTriangles);
+    add("medium_triangles", "sphere100k", true, Items::kTriangles);
     add("large_samples", "soup20k", true, Items::kSamples);
     for (const bool hierarchical_z : {true, false}) {
         const std::string way = hierarchical_z ? "hi_z" : "no_hi_z";
