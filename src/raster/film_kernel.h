@@ -49,9 +49,13 @@ inline void develop_tile(const DevelopJob& job) {
     if (!job.r) {
         alignas(64) std::uint32_t row[kMaxTileSide];
         for (int x = 0; x < kMaxTileSide; x += kLanes<Float>) store(row + x, background);
-        for (int y = 0; y < job.height; ++y)
-            __builtin_memcpy(job.rgba + static_cast<std::size_t>(y) * job.stride, row,
-                             4 * static_cast<std::size_t>(job.width));
+        constexpr int kAhead = 6;  // rows
+        for (int y = 0; y < job.height; ++y) {
+            unsigned char* const to = job.rgba + static_cast<std::size_t>(y) * job.stride;
+            if (y + kAhead < job.height)
+                for (int x = 0; x < job.width; x += 16) __builtin_prefetch(to + kAhead * job.stride + 4 * x, 1);
+            __builtin_memcpy(to, row, 4 * static_cast<std::size_t>(job.width));
+        }
         return;
     }
     for_each_vector(job.side, job.width, job.height, [&](int at, int x, int y) {

@@ -96,6 +96,16 @@ TESSERA_INLINE void mark_hits(const Points& points, std::uint64_t& hit) {
     for (int i = 0; i < kVectors; ++i) hit |= static_cast<std::uint64_t>(points.used[i]) << i * kLanes<Float>;
 }
 
+// Asks for the lines of the picture that a block of the tile will be written to: pictures lie beyond the
+// second-level cache, and eight rows of them are eight places far apart.
+TESSERA_INLINE void fetch_picture(const DevelopJob& job, int block) {
+    const int blocks = job.side / kBlockSide, column = block % blocks * kBlockSide, row = block / blocks * kBlockSide;
+    if (column % 16 != 0 || column >= job.width) return;
+    const unsigned char* at =
+        job.rgba + static_cast<std::size_t>(row) * job.stride + 4 * static_cast<std::size_t>(column);
+    for (int y = row; y < row + kBlockSide && y < job.height; ++y, at += job.stride) __builtin_prefetch(at, 1);
+}
+
 // One sample a pixel: from radiance to the picture.
 __attribute__((noinline)) inline void develop_block(const DevelopJob& job, const Points& points, int column, int row,
                                                     Uint background) {
@@ -143,7 +153,9 @@ inline void shade_blocks(const ShadeJob& job) {
     const Uint background = job.develop ? display_pixels(job.develop->film, {zero, zero, zero}, zero) : Uint(0u);
     const int blocks = job.side / kBlockSide;
     Points points;
+    constexpr int kAhead = 6;  // blocks
     for (int block = 0; block < blocks * blocks; ++block) {
+        if (job.develop) fetch_picture(*job.develop, block + kAhead);
         const int column = block % blocks * kBlockSide, row = block / blocks * kBlockSide;
         const int place = block * kBlockPixels;
         if (take_block(job, column, row, job.ordinal + place, points)) {
