@@ -1,4 +1,4 @@
-// The first stage of shading: from ordinals and picture positions to surface points, a block of 64 at a
+// The first stage of shading: from ordinals and picture positions to surface points, some blocks at a
 // time. The stages hand each other blocks, not vectors, so that several vectors of a stage are under way
 // while the square roots and divisions of one take their time. Part of a kernel file, once per
 // instruction set.
@@ -8,10 +8,12 @@
 
 namespace tessera::TESSERA_ISA_NAMESPACE {
 
-inline constexpr int kVectors = kBlockPixels / kLanes<Float>;  // of a block of points
+// As many blocks of a tile at a time as the first-level cache holds.
+inline constexpr int kPointBlocks = 4;
+inline constexpr int kBlockVectors = kBlockPixels / kLanes<Float>, kVectors = kPointBlocks * kBlockVectors;
 inline constexpr std::uint32_t kAllLanes = (1u << (kLanes<Float> - 1) << 1) - 1;
 
-// A block of a tile, or a part of a list, on its way through the stages.
+// Some blocks of a tile, or a part of a list, on their way through the stages.
 struct Points {
     static constexpr int kNumbers = 3 * 3 + 4 + 6 * kMaxUvSets;
 

@@ -1,4 +1,4 @@
-// Visible samples to radiance and on to the picture, in three stages that hand each other blocks of
+// Visible samples to radiance and on to the picture, in three stages that hand each other some blocks of
 // points: surfaces (point_kernel.h), materials and lights, film or sums. All of it through the templates
 // that the reference uses with plain numbers. Part of a kernel file, once per instruction set.
 #pragma once
@@ -72,28 +72,25 @@ struct Stages {
     }
 };
 
-// The points of a block whose first pixel is (column, row) of the tile. Returns whether any is seen.
-TESSERA_INLINE bool take_block(const ShadeJob& job, int column, int row, const std::uint32_t* ordinals,
-                               Points& points) {
+// Fills part `part` of the points with a block of the tile. Returns whether anything of it is seen.
+TESSERA_INLINE bool take_block(const ShadeJob& job, int block, int part, Points& points) {
     // Whole numbers below 2^24, so their sums are exact.
     const Float columns = to_float(lane_column() << 8), rows = to_float(lane_row() << 8);
-    const float x = static_cast<float>(256 * (job.x0 + column) + job.offset.x),
-                y = static_cast<float>(256 * (job.y0 + row) + job.offset.y);
-    points.numbers = ordinals;
-    std::uint32_t some = 0;
-    for (int i = 0; i < kVectors; ++i) {
-        const int at = i * kLanes<Float>;
-        points.ordinals[i] = load<Uint>(ordinals + at);
-        points.used[i] = mask_bits(points.ordinals[i] != Uint(0u));
-        points.x[i] = columns + Float(x + static_cast<float>(256 * (at % kBlockSide)));
-        points.y[i] = rows + Float(y + static_cast<float>(256 * (at / kBlockSide)));
-        some |= points.used[i];
+    const int blocks = job.side / kBlockSide;
+    const float x = static_cast<float>(256 * (job.x0 + block % blocks * kBlockSide) + job.offset.x),
+                y = static_cast<float>(256 * (job.y0 + block / blocks * kBlockSide) + job.offset.y);
+    const std::uint32_t* const ordinals = job.ordinal + block * kBlockPixels;
+    std::uint64_t seen = 0;
+    for (int i = 0; i < kBlockVectors; ++i) {
+        const int at = i * kLanes<Float>, k = part * kBlockVectors + i;
+        points.ordinals[k] = load<Uint>(ordinals + at);
+        points.used[k] = mask_bits(points.ordinals[k] != Uint(0u));
+        points.x[k] = columns + Float(x + static_cast<float>(256 * (at % kBlockSide)));
+        points.y[k] = rows + Float(y + static_cast<float>(256 * (at / kBlockSide)));
+        seen |= static_cast<std::uint64_t>(points.used[k]) << at;
     }
-    return some != 0;
-}
-
-TESSERA_INLINE void mark_hits(const Points& points, std::uint64_t& hit) {
-    for (int i = 0; i < kVectors; ++i) hit |= static_cast<std::uint64_t>(points.used[i]) << i * kLanes<Float>;
+    job.hit[block] |= seen;
+    return seen != 0;
 }
 
 // Asks for the lines of the picture that a block of the tile will be written to: pictures lie beyond the
@@ -106,42 +103,43 @@ TESSERA_INLINE void fetch_picture(const DevelopJob& job, int block) {
     for (int y = row; y < row + kBlockSide && y < job.height; ++y, at += job.stride) __builtin_prefetch(at, 1);
 }
 
-// One sample a pixel: from radiance to the picture.
-__attribute__((noinline)) inline void develop_block(const DevelopJob& job, const Points& points, int column, int row,
+// One sample a pixel: from the radiance of part `part` of the points to a block of the picture.
+__attribute__((noinline)) inline void develop_block(const DevelopJob& job, const Points& points, int part, int block,
                                                     Uint background) {
     const Float zero(0.0f), one(1.0f);
     const FilmView film = job.film;
-    for (int i = 0; i < kVectors; ++i) {
+    const int blocks = job.side / kBlockSide, column = block % blocks * kBlockSide, row = block / blocks * kBlockSide;
+    for (int i = 0; i < kBlockVectors; ++i) {
+        const int at = i * kLanes<Float>, k = part * kBlockVectors + i;
         Uint pixels = background;
-        if (points.used[i] == kAllLanes) {
-            pixels = display_pixels(film, points.shaded[i].radiance, one);
-        } else if (points.used[i]) {
-            const Mask covered = points.ordinals[i] != Uint(0u);
-            const Vec3T<Float>& c = points.shaded[i].radiance;
+        if (points.used[k] == kAllLanes) {
+            pixels = display_pixels(film, points.shaded[k].radiance, one);
+        } else if (points.used[k]) {
+            const Mask covered = points.ordinals[k] != Uint(0u);
+            const Vec3T<Float>& c = points.shaded[k].radiance;
             pixels = display_pixels(
                 film, {select(covered, c.x, zero), select(covered, c.y, zero), select(covered, c.z, zero)},
                 select(covered, one, zero));
         }
-        const int at = i * kLanes<Float>;
         store_pixels(pixels, job.rgba, job.stride, column + at % kBlockSide, row + at / kBlockSide, job.width,
                      job.height);
     }
 }
 
-// Several: adds to the sums from `place` on, or begins them.
-__attribute__((noinline)) inline void add_block(const ShadeJob& job, const Points& points, int place) {
+// Several: adds a block to the sums, or begins them.
+__attribute__((noinline)) inline void add_block(const ShadeJob& job, const Points& points, int part, int block) {
     const Float zero(0.0f), one(1.0f);
-    for (int i = 0; i < kVectors; ++i) {
-        const int at = place + i * kLanes<Float>;
-        if (!points.used[i] && !job.first) continue;
-        const Mask covered = points.ordinals[i] != Uint(0u);
+    for (int i = 0; i < kBlockVectors; ++i) {
+        const int at = block * kBlockPixels + i * kLanes<Float>, k = part * kBlockVectors + i;
+        if (!points.used[k] && !job.first) continue;
+        const Mask covered = points.ordinals[k] != Uint(0u);
         const auto add = [&](float* plane, Float value) {
             const Float before = job.first ? zero : load<Float>(plane + at);
             store(plane + at, before + select(covered, value, zero));
         };
-        add(job.r, points.shaded[i].radiance.x);
-        add(job.g, points.shaded[i].radiance.y);
-        add(job.b, points.shaded[i].radiance.z);
+        add(job.r, points.shaded[k].radiance.x);
+        add(job.g, points.shaded[k].radiance.y);
+        add(job.b, points.shaded[k].radiance.z);
         add(job.alpha, one);
     }
 }
@@ -151,22 +149,26 @@ inline void shade_blocks(const ShadeJob& job) {
     const Stages stages(batch);
     const Float zero(0.0f);
     const Uint background = job.develop ? display_pixels(job.develop->film, {zero, zero, zero}, zero) : Uint(0u);
-    const int blocks = job.side / kBlockSide;
+    const int blocks = job.side / kBlockSide * (job.side / kBlockSide);
+    static_assert(32 / kBlockSide % kPointBlocks == 0, "the smallest tile's rows are whole numbers of them");
+    constexpr int kAhead = 2 * kPointBlocks;
     Points points;
-    constexpr int kAhead = 6;  // blocks
-    for (int block = 0; block < blocks * blocks; ++block) {
-        if (job.develop) fetch_picture(*job.develop, block + kAhead);
-        const int column = block % blocks * kBlockSide, row = block / blocks * kBlockSide;
-        const int place = block * kBlockPixels;
-        if (take_block(job, column, row, job.ordinal + place, points)) {
+    for (int block = 0; block < blocks; block += kPointBlocks) {
+        points.numbers = job.ordinal + block * kBlockPixels;
+        bool some = false;
+        for (int part = 0; part < kPointBlocks; ++part) some |= take_block(job, block + part, part, points);
+        if (some) {
             stages.find(batch, points);
             stages.shade(batch, points);
-            mark_hits(points, job.hit[block]);
         }
-        if (job.develop)
-            develop_block(*job.develop, points, column, row, background);
-        else
-            add_block(job, points, place);
+        for (int part = 0; part < kPointBlocks; ++part) {
+            if (!job.develop) {
+                add_block(job, points, part, block + part);
+                continue;
+            }
+            fetch_picture(*job.develop, block + part + kAhead);
+            develop_block(*job.develop, points, part, block + part, background);
+        }
     }
 }
 
@@ -175,7 +177,7 @@ inline void shade_list(const ShadeJob& job) {
     const Stages stages(batch);
     constexpr std::uint32_t kWidth = kLanes<Float>;
     Points points;
-    for (std::uint32_t first = 0; first < job.count; first += kBlockPixels) {
+    for (std::uint32_t first = 0; first < job.count; first += kPointBlocks * kBlockPixels) {
         points.numbers = job.list + first;
         for (std::uint32_t i = 0; i < kVectors; ++i) {
             const std::uint32_t at = first + i * kWidth;
