@@ -106,5 +106,45 @@ TEST(SetupByDefinition, MasksAndPlanes) {
     EXPECT_GT(large, 500);
 }
 
+// Who is left out, and as what: the scalar path's judgement, triangle by triangle, of all that are not handed to it.
+TEST(SetupByDefinition, RejectsWhatTheScalarPathRejects) {
+    const FpEnvironment exact;
+    Random random(13);
+    std::uint64_t outside = 0, touching = 0;
+    const ProjectionView projection = KernelWorld(random).projection;
+    for (int round = 0; round < 2000; ++round) {
+        KernelMesh mesh(random, kPlaces[static_cast<std::size_t>(round) % std::size(kPlaces)], 60);
+        // By turns moved left by 0.3 / 256 pixel: what lay on the left border is outside, and snaps to it.
+        if (round / static_cast<int>(std::size(kPlaces)) % 2)
+            mesh.instance().object_to_clip[2] = 0.3f / (256 * KernelMesh::kWidth / 2);
+        SetupOptions options;
+        options.double_sided = false;
+        SetupResult r;
+        set_up(raster_kernels(Isa::kScalar), mesh, 0, options, r);
+        std::vector<bool> slow(mesh.triangles());
+        for (const std::uint32_t call : r.calls)
+            if (call >> 30 == 2) slow[call & 0x3fffffffu] = true;
+        FrontCounters want;
+        TriangleSetup t;
+        for (std::uint32_t i = 0; i < mesh.triangles(); ++i) {
+            setup_triangle(mesh.instance(), i, projection, t);
+            if (slow[i]) {
+                touching += t.kind == TriangleSetup::Kind::kOutside;
+                continue;
+            }
+            ASSERT_NE(t.kind, TriangleSetup::Kind::kClipped);
+            want.frustum += t.kind == TriangleSetup::Kind::kOutside;
+            want.degenerate += t.kind == TriangleSetup::Kind::kDegenerate;
+            want.backface += t.kind == TriangleSetup::Kind::kPlain && !t.front(mesh.instance());
+        }
+        ASSERT_EQ(r.counters.frustum, want.frustum) << round;
+        ASSERT_EQ(r.counters.degenerate, want.degenerate) << round;
+        ASSERT_EQ(r.counters.backface, want.backface) << round;
+        outside += want.frustum;
+    }
+    EXPECT_GT(outside, 500u);
+    EXPECT_GT(touching, 5u);
+}
+
 }  // namespace
 }  // namespace tessera
