@@ -66,9 +66,9 @@ TESSERA_INLINE Vec4T<F> base_color(const MaterialView& m, const SurfacePoint<F>&
 }
 
 // 1 where nothing is in the way of ambient light.
-template <class F>
+template <int kUvSets, class F>
 TESSERA_INLINE F occlusion(const MaterialView& m, const SurfacePoint<F>& s) {
-    return F(1.0f) + F(m.occlusion_strength) * (read_input(m, TextureSlot::kOcclusion, s).x - F(1.0f));
+    return F(1.0f) + F(m.occlusion_strength) * (read_input<kUvSets>(m, TextureSlot::kOcclusion, s).x - F(1.0f));
 }
 
 // Alpha as the alpha mode sees it: 1 for opaque materials, 0 or 1 for cut-outs.
@@ -113,7 +113,7 @@ TESSERA_INLINE LobeParameters<F> evaluate_material(const MaterialView& m, const 
     p.metallic = saturate(F(m.metallic) * mr.z);
     p.roughness = saturate(F(m.roughness) * mr.y);
     p.emission = Vec3T<F>::load(m.emission) * read_input<kUvSets>(m, TextureSlot::kEmissive, s).xyz();
-    p.occlusion = kUvSets > 0 ? occlusion(m, s) : F(1.0f);
+    p.occlusion = kUvSets > 0 ? occlusion<kUvSets>(m, s) : F(1.0f);
     return p;
 }
 

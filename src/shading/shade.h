@@ -82,8 +82,8 @@ TESSERA_INLINE void shade_textbook(const ShadingContext& context, const Material
             alpha = alpha * c.w;
             radiance = radiance * color[k];
             if (kUvSets > 0) {
-                radiance = radiance * occlusion(m, s);
-                emission = emission * read_input(m, TextureSlot::kEmissive, s).xyz();
+                radiance = radiance * occlusion<kUvSets>(m, s);
+                emission = emission * read_input<kUvSets>(m, TextureSlot::kEmissive, s).xyz();
             }
         }
         out[k].radiance = radiance + emission;
