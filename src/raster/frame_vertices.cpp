@@ -1,5 +1,7 @@
 #include "raster/frame_vertices.h"
 
+#include "core/huge_pages.h"
+
 #include <algorithm>
 
 namespace tessera {
@@ -33,7 +35,9 @@ void FrameVertices::place(const Frame& frame, const std::vector<std::uint32_t>& 
     }
     if (filled > 0) task_begin_.push_back(parts_.size());
     for (std::size_t i = numbers_.size(); i < scattered_corners; ++i) numbers_.push_back(static_cast<std::uint32_t>(i));
-    const TransformedVertex* const all = vertices_.reserve(size);
+    if (vertices_.capacity() < size)
+        prefer_huge_pages(vertices_.reserve(size), vertices_.capacity() * sizeof(TransformedVertex));
+    const TransformedVertex* const all = vertices_.data();
     for (const Part& part : parts_) {
         if (part.first > 0) continue;
         const PreparedMesh& mesh = *frame.prepared[part.instance];

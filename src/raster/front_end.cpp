@@ -1,5 +1,7 @@
 #include "raster/front_end.h"
 
+#include "core/huge_pages.h"
+
 #include <algorithm>
 #include <bit>
 
@@ -24,11 +26,11 @@ struct ChunkBuilder {
 
     void point_at_arrays() {
         ChunkArrays& a = job.arrays;
-        a.small = chunk.small.data();
+        a.small = chunk.small;
         a.large = chunk.large.data();
         a.runs = chunk.unsorted.data();
         a.run_tiles = chunk.tiles.data();
-        a.small_capacity = static_cast<std::uint32_t>(chunk.small.capacity());
+        a.small_capacity = chunk.small_capacity;
         a.large_capacity = static_cast<std::uint32_t>(chunk.large.capacity());
         a.run_capacity = static_cast<std::uint32_t>(std::min(chunk.unsorted.capacity(), chunk.tiles.capacity()));
     }
@@ -37,7 +39,6 @@ struct ChunkBuilder {
     void reserve(std::uint32_t runs) {
         ChunkArrays& a = job.arrays;
         if (a.room() >= kMaxLanes && a.run_count + runs <= a.run_capacity) return;
-        chunk.small.reserve(a.small_count + kMaxLanes, a.small_count);
         chunk.large.reserve(a.large_count + kMaxLanes, a.large_count);
         chunk.unsorted.reserve(a.run_count + runs, a.run_count);
         chunk.tiles.reserve(a.run_count + runs, a.run_count);
@@ -198,6 +199,29 @@ void FrontEnd::make_chunks(const FrontEndInput& input, int threads) {
     }
     if (filled > 0) chunk_begin_.push_back(ranges_.size());
     if (chunks_.size() < chunk_begin_.size() - 1) chunks_.resize(chunk_begin_.size() - 1);
+    place_small_triangles();
+}
+
+// One array for all chunks. What a chunk does not need is never touched, and takes memory only where pages
+// are huge: so they are not asked for beyond some 64 MiB.
+void FrontEnd::place_small_triangles() {
+    constexpr std::uint32_t kSpare = 2 * kMaxLanes;  // whole vectors are written
+    std::size_t total = 0;
+    for (const Range& range : ranges_) total += range.count;
+    total += kSpare * chunks_.size();
+    if (small_.capacity() < total) {
+        small_.reserve(total);
+        const std::size_t bytes = total * sizeof(SmallTriangle);
+        if (bytes <= std::size_t{64} << 20) prefer_huge_pages(small_.data(), bytes);
+    }
+    SmallTriangle* next = small_.data();
+    for (std::size_t c = 0; c + 1 < chunk_begin_.size(); ++c) {
+        std::uint32_t room = kSpare;
+        for (std::size_t r = chunk_begin_[c]; r < chunk_begin_[c + 1]; ++r) room += ranges_[r].count;
+        chunks_[c].small = next;
+        chunks_[c].small_capacity = room;
+        next += room;
+    }
 }
 
 void FrontEnd::set_up(const FrontEndInput& input, const Range& range, BinnedChunk& chunk, FrontCounters& sum) const {
@@ -260,7 +284,7 @@ std::uint32_t FrontEnd::bins_of(int tile, std::vector<TileBin>& bins) const {
         const BinnedChunk& chunk = chunks_[c];
         const std::uint32_t first = chunk.begin[t], end = chunk.begin[t + 1];
         if (first == end) continue;
-        bins.push_back({chunk.small.data(), chunk.large.data(), chunk.runs.data() + first, end - first});
+        bins.push_back({chunk.small, chunk.large.data(), chunk.runs.data() + first, end - first});
         for (std::uint32_t r = first; r < end; ++r) count += chunk.runs[r].size();
     }
     return count;

@@ -23,7 +23,8 @@ struct TileGrid {
 
 // What one chunk gave. The runs of tile t are runs[begin[t]] to runs[begin[t + 1]].
 struct BinnedChunk {
-    Buffer<SmallTriangle> small;
+    SmallTriangle* small = nullptr;  // a part of FrontEnd's, with room for all of the chunk's triangles
+    std::uint32_t small_capacity = 0;
     Buffer<LargeTriangle> large;
     Buffer<BinRun> runs;
     Buffer<std::uint32_t> begin;
@@ -62,6 +63,7 @@ class FrontEnd {
         std::uint32_t instance, first, count;
     };
 
+    void place_small_triangles();
     void make_chunks(const FrontEndInput& input, int threads);
     void build_chunk(const FrontEndInput& input, std::size_t chunk);
     void set_up(const FrontEndInput& input, const Range& range, BinnedChunk& chunk, FrontCounters& sum) const;
@@ -71,6 +73,7 @@ class FrontEnd {
     std::vector<Range> ranges_;
     std::vector<std::size_t> chunk_begin_;  // first range of every chunk, and the end
     std::vector<BinnedChunk> chunks_;
+    Buffer<SmallTriangle> small_;
     std::mutex mutex_;
 };
 

@@ -17,12 +17,13 @@ inline constexpr std::uint32_t kAllLanes = (1u << (kLanes<Float> - 1) << 1) - 1;
 struct Points {
     static constexpr int kNumbers = 3 * 3 + 4 + 6 * kMaxUvSets;
 
-    const std::uint32_t* numbers;  // ordinals one by one
-    std::uint32_t used[kVectors];  // lanes that count
-    Uint ordinals[kVectors];
+    const std::uint32_t* numbers;       // ordinals
+    std::uint32_t used[kVectors];       // lanes that count
     Float x[kVectors], y[kVectors];     // picture positions
     Float surface[kVectors][kNumbers];  // as visit_numbers() orders them
     ShadedPoint<Float> shaded[kVectors];
+
+    TESSERA_INLINE Uint ordinals(int k) const { return load<Uint>(numbers + k * kLanes<Float>); }
 };
 
 // What the points of a job share: copies, which no store can change.
@@ -142,7 +143,7 @@ __attribute__((noinline)) void find_surfaces(const Batch& batch, Points& points)
         if (!points.used[k]) continue;
         const Float x = points.x[k], y = points.y[k];
         SurfaceSample<Float> sample;
-        sample_lanes(job, l, points.ordinals[k], points.numbers + k * kLanes<Float>, points.used[k], x, y, sample);
+        sample_lanes(job, l, points.ordinals(k), points.numbers + k * kLanes<Float>, points.used[k], x, y, sample);
         SurfacePoint<Float> s = surface_point(l, rays, sample, x, y, footprint_scale);
         if (l.tangent >= 0) s.normal = shading_normal(batch.material, s);
         Float* const numbers = points.surface[k];

@@ -79,12 +79,10 @@ TESSERA_INLINE bool take_block(const ShadeJob& job, int block, int part, Points&
     const int blocks = job.side / kBlockSide;
     const float x = static_cast<float>(256 * (job.x0 + block % blocks * kBlockSide) + job.offset.x),
                 y = static_cast<float>(256 * (job.y0 + block / blocks * kBlockSide) + job.offset.y);
-    const std::uint32_t* const ordinals = job.ordinal + block * kBlockPixels;
     std::uint64_t seen = 0;
     for (int i = 0; i < kBlockVectors; ++i) {
         const int at = i * kLanes<Float>, k = part * kBlockVectors + i;
-        points.ordinals[k] = load<Uint>(ordinals + at);
-        points.used[k] = mask_bits(points.ordinals[k] != Uint(0u));
+        points.used[k] = mask_bits(points.ordinals(k) != Uint(0u));
         points.x[k] = columns + Float(x + static_cast<float>(256 * (at % kBlockSide)));
         points.y[k] = rows + Float(y + static_cast<float>(256 * (at / kBlockSide)));
         seen |= static_cast<std::uint64_t>(points.used[k]) << at;
@@ -115,7 +113,7 @@ __attribute__((noinline)) inline void develop_block(const DevelopJob& job, const
         if (points.used[k] == kAllLanes) {
             pixels = display_pixels(film, points.shaded[k].radiance, one);
         } else if (points.used[k]) {
-            const Mask covered = points.ordinals[k] != Uint(0u);
+            const Mask covered = points.ordinals(k) != Uint(0u);
             const Vec3T<Float>& c = points.shaded[k].radiance;
             pixels = display_pixels(
                 film, {select(covered, c.x, zero), select(covered, c.y, zero), select(covered, c.z, zero)},
@@ -132,7 +130,7 @@ __attribute__((noinline)) inline void add_block(const ShadeJob& job, const Point
     for (int i = 0; i < kBlockVectors; ++i) {
         const int at = block * kBlockPixels + i * kLanes<Float>, k = part * kBlockVectors + i;
         if (!points.used[k] && !job.first) continue;
-        const Mask covered = points.ordinals[k] != Uint(0u);
+        const Mask covered = points.ordinals(k) != Uint(0u);
         const auto add = [&](float* plane, Float value) {
             const Float before = job.first ? zero : load<Float>(plane + at);
             store(plane + at, before + select(covered, value, zero));
@@ -185,7 +183,6 @@ inline void shade_list(const ShadeJob& job) {
             if (at >= job.count) continue;
             const std::uint32_t left = job.count - at;
             points.used[i] = left < kWidth ? (1u << left) - 1 : kAllLanes;
-            points.ordinals[i] = load<Uint>(job.list + at);
             points.x[i] = to_float(load<Int>(job.x + at));
             points.y[i] = to_float(load<Int>(job.y + at));
         }
