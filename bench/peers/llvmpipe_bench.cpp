@@ -19,7 +19,7 @@
 
 namespace {
 
-enum class Look { kLit, kUvSets, kFlat, kDepthOnly, kWhite };
+enum class Look { kLit, kTextured, kFlat, kDepthOnly, kWhite };
 
 struct Workload {
     wl::Mesh mesh;
@@ -40,7 +40,7 @@ Workload make_workload(std::string name, int w, int h) {
     if (name == "terrain1m") return {wl::terrain(707), wl::terrain_camera(w, h), look, false};
     if (name == "terrain100k") return {wl::terrain(224), wl::terrain_camera(w, h), look, false};
     if (look == Look::kLit) {
-        if (name == "soup20k") return {wl::soup(20000, 8, w, h), wl::soup_camera(w, h), Look::kUvSets, false};
+        if (name == "soup20k") return {wl::soup(20000, 8, w, h), wl::soup_camera(w, h), Look::kTextured, false};
         if (name == "quads_f2b") return {wl::quads(20, 1, w, h), {}, Look::kFlat, true};
         if (name == "quads_b2f") return {wl::quads(20, -1, w, h), {}, Look::kFlat, true};
     }
@@ -98,7 +98,7 @@ std::string fragment_shader(Look look) {
     switch (look) {
         case Look::kLit:
             return head + "#define ALBEDO vec3(0.8, 0.5, 0.3)\n" + kLitShader;
-        case Look::kUvSets:
+        case Look::kTextured:
             return head + "#define ALBEDO texture(picture, t).rgb\n" + kLitShader;
         case Look::kFlat:
             return head + "flat in vec4 color; out vec4 o; void main() { o = color; }\n";
@@ -216,7 +216,7 @@ void run(const std::string& name, int frames, int width, int height) {
     const Workload w = make_workload(name, width, height);
     make_context();
     upload_mesh(w.mesh);
-    if (w.look == Look::kUvSets) upload_texture();
+    if (w.look == Look::kTextured) upload_texture();
     make_framebuffer(width, height);
     glViewport(0, 0, width, height);
     glEnable(GL_DEPTH_TEST);

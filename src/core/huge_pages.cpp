@@ -10,6 +10,7 @@ namespace tessera {
 
 void prefer_huge_pages([[maybe_unused]] void* data, [[maybe_unused]] std::size_t bytes) {
 #ifdef __linux__
+    if (bytes < std::size_t{2} << 20) return;  // no huge page would fit
     // Whole pages, rounded outwards, so that neighbouring arrays form one range. Refused: nothing is lost.
     constexpr std::uintptr_t kPage = 4096;
     const auto first = reinterpret_cast<std::uintptr_t>(data) & ~(kPage - 1);

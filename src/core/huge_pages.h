@@ -6,7 +6,7 @@
 
 namespace tessera {
 
-// For fresh memory of at least a few hundred KiB, before anything is written to it.
+// For fresh memory, before anything is written to it. Does nothing for less than one such page.
 void prefer_huge_pages(void* data, std::size_t bytes);
 
 }  // namespace tessera

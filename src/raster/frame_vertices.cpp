@@ -3,6 +3,7 @@
 #include "core/huge_pages.h"
 
 #include <algorithm>
+#include <numeric>
 
 namespace tessera {
 
@@ -34,9 +35,14 @@ void FrameVertices::place(const Frame& frame, const std::vector<std::uint32_t>& 
         size += (std::size_t{count} + kMaxLanes - 1) / kMaxLanes * kMaxLanes;
     }
     if (filled > 0) task_begin_.push_back(parts_.size());
-    for (std::size_t i = numbers_.size(); i < scattered_corners; ++i) numbers_.push_back(static_cast<std::uint32_t>(i));
-    if (vertices_.capacity() < size)
-        prefer_huge_pages(vertices_.reserve(size), vertices_.capacity() * sizeof(TransformedVertex));
+    if (numbers_.size() < scattered_corners) {
+        numbers_.resize(scattered_corners);
+        std::iota(numbers_.begin(), numbers_.end(), 0u);
+    }
+    if (vertices_.capacity() < size) {
+        vertices_.reserve(size);
+        prefer_huge_pages(vertices_.data(), size * sizeof(TransformedVertex));
+    }
     const TransformedVertex* const all = vertices_.data();
     for (const Part& part : parts_) {
         if (part.first > 0) continue;

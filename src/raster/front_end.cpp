@@ -199,16 +199,17 @@ void FrontEnd::make_chunks(const FrontEndInput& input, int threads) {
     }
     if (filled > 0) chunk_begin_.push_back(ranges_.size());
     if (chunks_.size() < chunk_begin_.size() - 1) chunks_.resize(chunk_begin_.size() - 1);
-    place_small_triangles();
+    place_small_triangles(input.samples.size() == 1);
 }
 
-// One array for all chunks. What a chunk does not need is never touched, and takes memory only where pages
-// are huge: so they are not asked for beyond some 64 MiB.
-void FrontEnd::place_small_triangles() {
+// One array for all chunks; `masks`: whether there can be any. What a chunk does not need is never touched, and takes
+// memory only where pages are huge: so they are not asked for beyond some 64 MiB.
+void FrontEnd::place_small_triangles(bool masks) {
     constexpr std::uint32_t kSpare = 2 * kMaxLanes;  // whole vectors are written
     std::size_t total = 0;
     for (const Range& range : ranges_) total += range.count;
-    total += kSpare * chunks_.size();
+    if (!masks) total = 0;
+    total += kSpare * (chunk_begin_.size() - 1);
     if (small_.capacity() < total) {
         small_.reserve(total);
         const std::size_t bytes = total * sizeof(SmallTriangle);
@@ -217,7 +218,7 @@ void FrontEnd::place_small_triangles() {
     SmallTriangle* next = small_.data();
     for (std::size_t c = 0; c + 1 < chunk_begin_.size(); ++c) {
         std::uint32_t room = kSpare;
-        for (std::size_t r = chunk_begin_[c]; r < chunk_begin_[c + 1]; ++r) room += ranges_[r].count;
+        for (std::size_t r = chunk_begin_[c]; masks && r < chunk_begin_[c + 1]; ++r) room += ranges_[r].count;
         chunks_[c].small = next;
         chunks_[c].small_capacity = room;
         next += room;

@@ -63,7 +63,7 @@ class FrontEnd {
         std::uint32_t instance, first, count;
     };
 
-    void place_small_triangles();
+    void place_small_triangles(bool masks);
     void make_chunks(const FrontEndInput& input, int threads);
     void build_chunk(const FrontEndInput& input, std::size_t chunk);
     void set_up(const FrontEndInput& input, const Range& range, BinnedChunk& chunk, FrontCounters& sum) const;

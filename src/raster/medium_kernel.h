@@ -46,14 +46,13 @@ inline constexpr std::int32_t kMediumSide = 16 * 256;
 template <bool kCount>
 TESSERA_INLINE void fill_medium(VisibilityJob& job, const PixelPlaces& places, const LargeTriangle& t,
                                 const TriangleBox& box, std::uint32_t ordinal) {
-    constexpr int kColumns = kLanes<Float> < kBlockSide ? kLanes<Float> : kBlockSide;
     const std::int32_t x0 = 256 * job.x0 + job.offset.x, y0 = 256 * job.y0 + job.offset.y;
     // The samples of the box, in the tile.
     const std::int32_t left = max((box.left - x0 + 255) >> 8, 0), top = max((box.top - y0 + 255) >> 8, 0);
     const std::int32_t right = min((box.right - x0) >> 8, job.side - 1),
                        bottom = min((box.bottom - y0) >> 8, job.side - 1);
     if (left > right || top > bottom) return;
-    const std::int32_t first_x = left & -kColumns, first_y = top & -kRows;
+    const std::int32_t first_x = left & -kPixelColumns, first_y = top & -kRows;
     const Int lane_x = lane_column(), lane_y = lane_row();
     Int start[3], right_step[3], down_step[3];
     for (int k = 0; k < 3; ++k) {
@@ -62,7 +61,7 @@ TESSERA_INLINE void fill_medium(VisibilityJob& job, const PixelPlaces& places, c
         const std::int32_t rule = dy < 0 || (dy == 0 && dx > 0) ? 0 : 1;
         const std::int32_t e = (dx * (y0 + 256 * top - from.y) - dy * (x0 + 256 * left - from.x) - rule) >> 8;
         start[k] = Int(e - dy * (first_x - left) + dx * (first_y - top)) + (Int(dx) * lane_y - Int(dy) * lane_x);
-        right_step[k] = Int(-dy * kColumns);
+        right_step[k] = Int(-dy * kPixelColumns);
         down_step[k] = Int(dx * kRows);
     }
     const DepthPlane<float>& p = t.depth;
@@ -70,7 +69,7 @@ TESSERA_INLINE void fill_medium(VisibilityJob& job, const PixelPlaces& places, c
     const Uint id(ordinal);
     Float dx = to_float((lane_x << 8) + Int(x0 + 256 * first_x - p.anchor_x));
     const Float first_dy = to_float((lane_y << 8) + Int(y0 + 256 * first_y - p.anchor_y));
-    for (std::int32_t x = first_x; x <= right; x += kColumns) {
+    for (std::int32_t x = first_x; x <= right; x += kPixelColumns) {
         Int e0 = start[0], e1 = start[1], e2 = start[2];
         const Float x_part = ddx * dx;
         Float dy = first_dy;
@@ -96,7 +95,7 @@ TESSERA_INLINE void fill_medium(VisibilityJob& job, const PixelPlaces& places, c
             dy += Float(256.0f * kRows);  // whole numbers: exact
         }
         start[0] += right_step[0], start[1] += right_step[1], start[2] += right_step[2];
-        dx += Float(256.0f * kColumns);
+        dx += Float(256.0f * kPixelColumns);
     }
 }
 

@@ -27,13 +27,13 @@ struct Points {
 };
 
 // What the points of a job share: copies, which no store can change.
-struct Batch {
+struct ShadeConstants {
     const ShadeJob& job;
     const ShadingContext context;
     const MaterialView material;
     const PictureRays rays;
 
-    explicit Batch(const ShadeJob& j)
+    explicit ShadeConstants(const ShadeJob& j)
         : job(j), context(*j.source->shading), material(*j.material), rays(j.source->projection) {}
 };
 
@@ -134,18 +134,18 @@ TESSERA_INLINE void sample_lanes(const ShadeJob& job, const SurfaceLayout& l, co
 
 // From ordinals and positions to Points::surface.
 template <class Layout>
-__attribute__((noinline)) void find_surfaces(const Batch& batch, Points& points) {
-    const ShadeJob& job = batch.job;
+__attribute__((noinline)) void find_surfaces(const ShadeConstants& constants, Points& points) {
+    const ShadeJob& job = constants.job;
     const SurfaceLayout& l = Layout::layout(job);
-    const PictureRays rays = batch.rays;
-    const float footprint_scale = batch.context.footprint_scale;
+    const PictureRays rays = constants.rays;
+    const float footprint_scale = constants.context.footprint_scale;
     for (int k = 0; k < kVectors; ++k) {
         if (!points.used[k]) continue;
         const Float x = points.x[k], y = points.y[k];
         SurfaceSample<Float> sample;
         sample_lanes(job, l, points.ordinals(k), points.numbers + k * kLanes<Float>, points.used[k], x, y, sample);
         SurfacePoint<Float> s = surface_point(l, rays, sample, x, y, footprint_scale);
-        if (l.tangent >= 0) s.normal = shading_normal(batch.material, s);
+        if (l.tangent >= 0) s.normal = shading_normal(constants.material, s);
         Float* const numbers = points.surface[k];
         visit_numbers(l, s, [numbers](int n, const Float& number) TESSERA_INLINE_LAMBDA { numbers[n] = number; });
     }

@@ -1,5 +1,6 @@
 // The rasterizer's kernels but for shading, compiled once per instruction set, and the table of all.
 #include "raster/film_kernel.h"
+#include "raster/setup_kernel.h"
 
 namespace tessera::TESSERA_ISA_NAMESPACE {
 

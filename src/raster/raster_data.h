@@ -147,7 +147,7 @@ struct SurfaceSource {
 struct TileCounters {
     std::uint64_t samples_covered = 0;   // inside a triangle and tested for depth
     std::uint64_t fragments_passed = 0;  // and in front
-    // Of triangles that are drawn by blocks; hidden by hierarchical Z.
+    // Of large triangles; a triangle that the whole tile hides counts as one.
     std::uint64_t blocks_drawn = 0, blocks_hidden = 0;
 };
 

@@ -7,9 +7,9 @@
 
 namespace tessera::TESSERA_ISA_NAMESPACE {
 
-// A block of points as a batch of shading.
+// Points as a batch of shading.
 template <class Layout>
-struct BlockBatch {
+struct PointBatch {
     static constexpr int kCount = kVectors;
     static constexpr bool kColored = Layout::kColored;
     const SurfaceLayout& layout;
@@ -30,27 +30,27 @@ struct BlockBatch {
 
 // From Points::surface to radiance and alpha.
 template <class Layout, ShadingFamily kFamily, int kUvSets>
-__attribute__((noinline)) void shade_surfaces(const Batch& batch, Points& points) {
+__attribute__((noinline)) void shade_surfaces(const ShadeConstants& constants, Points& points) {
     // Copies, which no store can change.
-    const ShadingContext context = batch.context;
-    const MaterialView material = batch.material;
-    const BlockBatch<Layout> block{Layout::layout(batch.job), points};
+    const ShadingContext context = constants.context;
+    const MaterialView material = constants.material;
+    const PointBatch<Layout> batch{Layout::layout(constants.job), points};
     shade_as<kFamily, kUvSets>(
-        context, material, block, [](int, const LightSample<Float>&, int) { return Float(1.0f); }, points.shaded);
+        context, material, batch, [](int, const LightSample<Float>&, int) { return Float(1.0f); }, points.shaded);
 }
 
 // The stages for a job: those that know its layout and family beforehand have less code.
 struct Stages {
-    void (*find)(const Batch& batch, Points& points);
-    void (*shade)(const Batch& batch, Points& points);
+    void (*find)(const ShadeConstants& constants, Points& points);
+    void (*shade)(const ShadeConstants& constants, Points& points);
 
-    explicit Stages(const Batch& batch) {
+    explicit Stages(const ShadeConstants& constants) {
         using enum ShadingFamily;
         int uv_sets = 0;  // that the material may name
-        for (const TextureInput& in : batch.material.inputs)
+        for (const TextureInput& in : constants.material.inputs)
             if (in.texture && in.uv_set >= uv_sets) uv_sets = in.uv_set + 1;
-        const ShadingFamily family = family_of(batch.material.model);
-        const SurfaceLayout& l = batch.job.layout;
+        const ShadingFamily family = family_of(constants.material.model);
+        const SurfaceLayout& l = constants.job.layout;
         find = &find_surfaces<AnyLayout>;
         shade = family == kUnlit      ? &shade_surfaces<AnyLayout, kUnlit, kMaxUvSets>
                 : family == kTextbook ? &shade_surfaces<AnyLayout, kTextbook, kMaxUvSets>
@@ -129,7 +129,12 @@ __attribute__((noinline)) inline void add_block(const ShadeJob& job, const Point
     const Float zero(0.0f), one(1.0f);
     for (int i = 0; i < kBlockVectors; ++i) {
         const int at = block * kBlockPixels + i * kLanes<Float>, k = part * kBlockVectors + i;
-        if (!points.used[k] && !job.first) continue;
+        if (!points.used[k]) {
+            if (!job.first) continue;
+            store(job.r + at, zero), store(job.g + at, zero);
+            store(job.b + at, zero), store(job.alpha + at, zero);
+            continue;
+        }
         const Mask covered = points.ordinals(k) != Uint(0u);
         const auto add = [&](float* plane, Float value) {
             const Float before = job.first ? zero : load<Float>(plane + at);
@@ -143,8 +148,8 @@ __attribute__((noinline)) inline void add_block(const ShadeJob& job, const Point
 }
 
 inline void shade_blocks(const ShadeJob& job) {
-    const Batch batch(job);
-    const Stages stages(batch);
+    const ShadeConstants constants(job);
+    const Stages stages(constants);
     const Float zero(0.0f);
     const Uint background = job.develop ? display_pixels(job.develop->film, {zero, zero, zero}, zero) : Uint(0u);
     const int blocks = job.side / kBlockSide * (job.side / kBlockSide);
@@ -156,8 +161,8 @@ inline void shade_blocks(const ShadeJob& job) {
         bool some = false;
         for (int part = 0; part < kPointBlocks; ++part) some |= take_block(job, block + part, part, points);
         if (some) {
-            stages.find(batch, points);
-            stages.shade(batch, points);
+            stages.find(constants, points);
+            stages.shade(constants, points);
         }
         for (int part = 0; part < kPointBlocks; ++part) {
             if (!job.develop) {
@@ -171,8 +176,8 @@ inline void shade_blocks(const ShadeJob& job) {
 }
 
 inline void shade_list(const ShadeJob& job) {
-    const Batch batch(job);
-    const Stages stages(batch);
+    const ShadeConstants constants(job);
+    const Stages stages(constants);
     constexpr std::uint32_t kWidth = kLanes<Float>;
     Points points;
     for (std::uint32_t first = 0; first < job.count; first += kPointBlocks * kBlockPixels) {
@@ -186,8 +191,8 @@ inline void shade_list(const ShadeJob& job) {
             points.x[i] = to_float(load<Int>(job.x + at));
             points.y[i] = to_float(load<Int>(job.y + at));
         }
-        stages.find(batch, points);
-        stages.shade(batch, points);
+        stages.find(constants, points);
+        stages.shade(constants, points);
         for (std::uint32_t i = 0; i < kVectors; ++i) {
             const std::uint32_t at = first + i * kWidth;
             if (at >= job.count) break;

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "raster/pixel_kernel.h"
-#include "raster/setup_kernel.h"
+#include "raster/vertex_kernel.h"
 
 namespace tessera::TESSERA_ISA_NAMESPACE {
 

@@ -52,7 +52,7 @@ void Tile::draw(const TileTask& task, int index) {
         const auto pixels = static_cast<std::size_t>(side_ * side_);
         depth_.resize(pixels);
         ordinal_.resize(pixels);
-        floor_.resize(pixels / kBlockPixels + kMaxLanes);
+        floor_.resize(pixels / kBlockPixels);
         hit_.resize(pixels / kBlockPixels);
         for (Planes* planes : {&sum_, &sample_})
             for (std::vector<float>& plane : *planes) plane.resize(pixels);

@@ -102,6 +102,8 @@ ShadingScene::ShadingScene(const Scene& scene, const std::vector<bool>& used, Ar
             input.texture = &textures_[view->second];
             input.uv_set = ref.uv_set;
             texture_transform(ref, input.transform);
+            constexpr float kIdentity[6] = {1, 0, 0, 0, 1, 0};
+            input.plain = std::equal(input.transform, input.transform + 6, kIdentity);
         }
 }
 

@@ -14,6 +14,7 @@ struct TextureInput {
     const TextureView* texture;  // null: the factor alone
     std::int32_t uv_set;
     float transform[6];  // rows of the 2x3 matrix on (u, v, 1)
+    bool plain = false;  // that is the identity, and left out
 };
 
 struct MaterialView {
@@ -47,10 +48,12 @@ TESSERA_INLINE Vec4T<F> read_input(const MaterialView& m, TextureSlot slot, cons
         uv = s.uv[set];
         d = s.footprint[set];
     }
-    const Footprint<F> footprint{d.ux * F(r[0]) + d.vx * F(r[1]), d.ux * F(r[3]) + d.vx * F(r[4]),
-                                 d.uy * F(r[0]) + d.vy * F(r[1]), d.uy * F(r[3]) + d.vy * F(r[4])};
-    return sample_texture(*in.texture, uv.x * F(r[0]) + uv.y * F(r[1]) + F(r[2]),
-                          uv.x * F(r[3]) + uv.y * F(r[4]) + F(r[5]), footprint);
+    if (!in.plain) {
+        uv = {uv.x * F(r[0]) + uv.y * F(r[1]) + F(r[2]), uv.x * F(r[3]) + uv.y * F(r[4]) + F(r[5])};
+        d = {d.ux * F(r[0]) + d.vx * F(r[1]), d.ux * F(r[3]) + d.vx * F(r[4]), d.uy * F(r[0]) + d.vy * F(r[1]),
+             d.uy * F(r[3]) + d.vy * F(r[4])};
+    }
+    return sample_texture(*in.texture, uv.x, uv.y, d);
 }
 
 // Colour and alpha of the surface itself: texture and vertex colour.

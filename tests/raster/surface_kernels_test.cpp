@@ -251,7 +251,10 @@ TEST_P(SurfaceKernels, SamePixelsOfATileDevelopedAtOnce) {
 TEST_P(SurfaceKernels, SameShadesOfPoints) {
     for (std::uint32_t material = 0; material < KernelWorld::kMaterials; ++material) {
         ShadeSetting s(50 + material, material, material % 2 == 0);
-        for (std::uint32_t count = 1; count < 40; ++count) {
+        // 256 at a time.
+        std::vector<std::uint32_t> counts{255, 256, 257, 300, 513};
+        for (std::uint32_t count = 1; count < 40; ++count) counts.push_back(count);
+        for (const std::uint32_t count : counts) {
             const std::size_t padded = count + kMaxLanes;
             GuardedArray<std::int32_t> x(padded), y(padded);
             GuardedArray<std::uint32_t> list(padded);
