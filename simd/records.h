@@ -27,6 +27,20 @@ TESSERA_INLINE void store_eights(Pointer&& pointer, std::uint32_t a) {
     __builtin_memcpy(pointer(0), &a, sizeof a);
 }
 
+// Streams go past the caches, to memory on a boundary of the vector; flush_streams() before another thread reads it.
+TESSERA_INLINE void stream(std::uint32_t* p, std::uint32_t a) { *p = a; }
+// Eight numbers of a and eight of b beside them at a time, as store_eights() has them, to pointer(0), pointer(1), ...
+template <class Pointer>
+TESSERA_INLINE void stream_eights(Pointer&& pointer, std::uint32_t a, std::uint32_t b) {
+    std::uint32_t* const to = pointer(0);
+    to[0] = a, to[8] = b;
+}
+TESSERA_INLINE void flush_streams() {
+#ifdef __SSE2__
+    __builtin_ia32_sfence();
+#endif
+}
+
 TESSERA_INLINE std::uint32_t or3(std::uint32_t a, std::uint32_t b, std::uint32_t c) { return a | b | c; }
 TESSERA_INLINE std::int32_t or3(std::int32_t a, std::int32_t b, std::int32_t c) { return a | b | c; }
 // The inverse of mask_bits().
@@ -128,6 +142,19 @@ requires std::is_same_v<V, Uint> TESSERA_INLINE void store_eights(Pointer&& poin
         hn::StoreU(hn::UpperHalf(d8, a.v), d8, to(1));
     } else {
         hn::StoreU(a.v, Tag<std::uint32_t>(), to(0));
+    }
+}
+
+TESSERA_INLINE void stream(std::uint32_t* p, Uint a) { hn::Stream(a.v, Tag<std::uint32_t>(), p); }
+template <class Pointer>
+TESSERA_INLINE void stream_eights(Pointer&& pointer, Uint a, Uint b) {
+    const Tag<std::uint32_t> d;
+    if constexpr (kCount == 16) {
+        hn::Stream(hn::ConcatLowerLower(d, b.v, a.v), d, pointer(0));
+        hn::Stream(hn::ConcatUpperUpper(d, b.v, a.v), d, pointer(1));
+    } else {
+        hn::Stream(a.v, d, pointer(0));
+        hn::Stream(b.v, d, pointer(0) + 8);
     }
 }
 

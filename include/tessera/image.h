@@ -22,8 +22,24 @@ enum class PixelFormat { kRgba8, kRgba16, kRgba32f, kF32, kU32 };
 // Bytes of one pixel: 4, 8, 16, 4, 4.
 TESSERA_API std::size_t bytes_per_pixel(PixelFormat format);
 
+TESSERA_API void* allocate_pixels(std::size_t bytes);
+TESSERA_API void free_pixels(void* pixels);
+
 // The largest width or height, in pixels.
 inline constexpr int kMaxImageSide = 16384;
+
+// Memory of pixels starts on a cache line, and lies on large pages where the system has them.
+template <class T>
+struct PixelAllocator {
+    using value_type = T;
+
+    PixelAllocator() = default;
+    template <class U>
+    PixelAllocator(const PixelAllocator<U>&) {}
+    T* allocate(std::size_t count) { return static_cast<T*>(allocate_pixels(count * sizeof(T))); }
+    void deallocate(T* pixels, std::size_t) { free_pixels(pixels); }
+    friend bool operator==(PixelAllocator, PixelAllocator) { return true; }
+};
 
 class TESSERA_API Image {
   public:
@@ -52,7 +68,7 @@ class TESSERA_API Image {
   private:
     int width_ = 0, height_ = 0;
     PixelFormat format_ = PixelFormat::kRgba8;
-    std::vector<std::byte> data_;
+    std::vector<std::byte, PixelAllocator<std::byte>> data_;
 };
 
 // --- codecs ---------------------------------------------------------------------------------

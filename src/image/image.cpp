@@ -5,6 +5,8 @@
 #include <array>
 #include <new>
 
+#include "core/huge_pages.h"
+
 namespace tessera {
 
 std::size_t bytes_per_pixel(PixelFormat format) {
@@ -20,6 +22,14 @@ std::size_t bytes_per_pixel(PixelFormat format) {
     }
     throw Error(ErrorCode::kUsage, "unknown pixel format");
 }
+
+void* allocate_pixels(std::size_t bytes) {
+    void* const pixels = ::operator new (bytes, std::align_val_t{64});
+    prefer_huge_pages(pixels, bytes);
+    return pixels;
+}
+
+void free_pixels(void* pixels) { ::operator delete (pixels, std::align_val_t{64}); }
 
 Image::Image(int width, int height, PixelFormat format) : width_(width), height_(height), format_(format) {
     if (width < 1 || height < 1 || width > kMaxImageSide || height > kMaxImageSide)

@@ -1,6 +1,5 @@
 // What is seen of a tile; and from its sums to the planes of the picture: colours developed, labels
-// written. Part of the
-// kernel file, once per instruction set.
+// written. Part of the kernel file, once per instruction set.
 #pragma once
 
 #include "raster/visibility_kernel.h"
@@ -43,21 +42,27 @@ TESSERA_INLINE void for_each_vector(int side, int width, int height, Visit&& vis
                       by * kBlockSide + at / kBlockSide);
 }
 
+// A tile that shows nothing.
+inline void fill_tile(const DevelopJob& job, Uint background) {
+    alignas(64) std::uint32_t row[kMaxTileSide];
+    for (int x = 0; x < kMaxTileSide; x += kLanes<Float>) store(row + x, background);
+    const bool streamed = job.streamed && job.width % kLinePixels == 0;
+    for (int y = 0; y < job.height; ++y) {
+        unsigned char* const to = job.rgba + static_cast<std::size_t>(y) * job.stride;
+        if (streamed) {
+            auto* const pixels = reinterpret_cast<std::uint32_t*>(to);
+            for (int x = 0; x < job.width; x += kLanes<Float>) stream(pixels + x, background);
+        } else {
+            __builtin_memcpy(to, row, 4 * static_cast<std::size_t>(job.width));
+        }
+    }
+    if (streamed) flush_streams();
+}
+
 inline void develop_tile(const DevelopJob& job) {
     const Float weight(job.weight), zero(0.0f);
     const Uint background = display_pixels(job.film, {zero, zero, zero}, zero);
-    if (!job.r) {
-        alignas(64) std::uint32_t row[kMaxTileSide];
-        for (int x = 0; x < kMaxTileSide; x += kLanes<Float>) store(row + x, background);
-        constexpr int kAhead = 6;  // rows
-        for (int y = 0; y < job.height; ++y) {
-            unsigned char* const to = job.rgba + static_cast<std::size_t>(y) * job.stride;
-            if (y + kAhead < job.height)
-                for (int x = 0; x < job.width; x += 16) __builtin_prefetch(to + kAhead * job.stride + 4 * x, 1);
-            __builtin_memcpy(to, row, 4 * static_cast<std::size_t>(job.width));
-        }
-        return;
-    }
+    if (!job.r) return fill_tile(job, background);
     for_each_vector(job.side, job.width, job.height, [&](int at, int x, int y) {
         const Float alpha = load<Float>(job.alpha + at);
         Uint pixels = background;

@@ -10,6 +10,7 @@ namespace tessera::TESSERA_ISA_NAMESPACE {
 // vectors in a row.
 inline constexpr int kRows = kLanes<Float> > kBlockSide ? kLanes<Float> / kBlockSide : 1;
 inline constexpr int kPerRow = kLanes<Float> < kBlockSide ? kBlockSide / kLanes<Float> : 1;
+inline constexpr int kLinePixels = 64 / 4;  // of a cache line
 inline constexpr int kPixelColumns = kLanes<Float> < kBlockSide ? kLanes<Float> : kBlockSide;
 TESSERA_INLINE Int lane_column() { return iota<Int>() & Int(kBlockSide - 1); }
 TESSERA_INLINE Int lane_row() { return iota<Int>() >> 3; }
@@ -31,6 +32,15 @@ TESSERA_INLINE void store_pixels(const Uint& values, unsigned char* first_pixel,
         else if (x < width)
             __builtin_memcpy(to, all + row * kPixelColumns, 4 * static_cast<std::size_t>(width - x));
     }
+}
+
+// The same for two blocks side by side that lie in the picture, past the caches. (x, y): the left one's.
+TESSERA_INLINE void stream_pixels(const Uint& left, const Uint& right, unsigned char* first_pixel, std::size_t stride,
+                                  int x, int y) {
+    unsigned char* const first = first_pixel + static_cast<std::size_t>(y) * stride + 4 * static_cast<std::size_t>(x);
+    stream_eights(
+        [=](int row) { return reinterpret_cast<std::uint32_t*>(first + static_cast<std::size_t>(row) * stride); }, left,
+        right);
 }
 
 // Display values of a vector of pixels, RGBA from the lowest byte on.

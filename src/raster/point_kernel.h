@@ -15,7 +15,7 @@ inline constexpr std::uint32_t kAllLanes = (1u << (kLanes<Float> - 1) << 1) - 1;
 
 // Some blocks of a tile, or a part of a list, on their way through the stages.
 struct Points {
-    static constexpr int kNumbers = 3 * 3 + 4 + 6 * kMaxUvSets;
+    static constexpr int kNumbers = 2 + 3 + 4 + 6 * kMaxUvSets;
 
     const std::uint32_t* numbers;       // ordinals
     std::uint32_t used[kVectors];       // lanes that count
@@ -42,8 +42,7 @@ template <class Point, class Visit>
 TESSERA_INLINE void visit_numbers(const SurfaceLayout& l, Point& s, Visit&& visit) {
     int n = 0;
     if (l.normal >= 0) {
-        visit(n++, s.position.x), visit(n++, s.position.y), visit(n++, s.position.z);
-        visit(n++, s.view.x), visit(n++, s.view.y), visit(n++, s.view.z);
+        visit(n++, s.position.z), visit(n++, s.view.z);  // what lies on the way to them is the picture position's
         visit(n++, s.normal.x), visit(n++, s.normal.y), visit(n++, s.normal.z);
     }
     if (l.color >= 0) visit(n++, s.color.x), visit(n++, s.color.y), visit(n++, s.color.z), visit(n++, s.color.w);
@@ -56,7 +55,8 @@ TESSERA_INLINE void visit_numbers(const SurfaceLayout& l, Point& s, Visit&& visi
 }
 
 // Without the geometry behind the normal, which shading does not read.
-TESSERA_INLINE SurfacePoint<Float> load_point(const SurfaceLayout& l, const Float* numbers) {
+TESSERA_INLINE SurfacePoint<Float> load_point(const SurfaceLayout& l, const EyeDirection<Float>& eye,
+                                              const Float* numbers) {
     const Float zero(0.0f), one(1.0f);
     SurfacePoint<Float> s;
     s.position = s.geometric_normal = s.tangent = s.bitangent = {zero, zero, zero};
@@ -68,6 +68,10 @@ TESSERA_INLINE SurfacePoint<Float> load_point(const SurfaceLayout& l, const Floa
         s.footprint[set] = {zero, zero, zero, zero};
     }
     visit_numbers(l, s, [numbers](int n, Float& number) TESSERA_INLINE_LAMBDA { number = numbers[n]; });
+    if (l.normal >= 0) {
+        s.position = eye.position(l.depth >= 0, s.position.z);
+        s.view = eye.view(l.depth >= 0, s.view.z);
+    }
     return s;
 }
 

@@ -221,6 +221,8 @@ struct DevelopJob {
     const float *r, *g, *b, *alpha;
     std::uint8_t* rgba;  // the tile's first pixel
     std::size_t stride;  // bytes from row to row
+    // Whole cache lines go past the caches; rgba and stride are multiples of them. For pictures that do not stay there.
+    bool streamed;
 };
 
 // Writes labels of a tile from its depth and ordinals.

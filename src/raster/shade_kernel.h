@@ -13,19 +13,22 @@ struct PointBatch {
     static constexpr int kCount = kVectors;
     static constexpr bool kColored = Layout::kColored;
     const SurfaceLayout& layout;
+    const PictureRays rays;
     const Points& points;
 
     TESSERA_INLINE bool used(int k) const { return points.used[k] != 0; }
-    TESSERA_INLINE Vec3T<Float> position(int k) const { return three(k, 0); }
-    TESSERA_INLINE Vec3T<Float> view(int k) const { return three(k, 3); }
-    TESSERA_INLINE Vec3T<Float> normal(int k) const { return three(k, 6); }
-    TESSERA_INLINE SurfacePoint<Float> point(int k) const { return load_point(layout, points.surface[k]); }
+    TESSERA_INLINE Vec3T<Float> position(int k) const {
+        return eye(k).position(layout.depth >= 0, points.surface[k][0]);
+    }
+    TESSERA_INLINE Vec3T<Float> view(int k) const { return eye(k).view(layout.depth >= 0, points.surface[k][1]); }
+    TESSERA_INLINE Vec3T<Float> normal(int k) const {
+        const Float* n = points.surface[k] + 2;
+        return {n[0], n[1], n[2]};
+    }
+    TESSERA_INLINE SurfacePoint<Float> point(int k) const { return load_point(layout, eye(k), points.surface[k]); }
 
   private:
-    TESSERA_INLINE Vec3T<Float> three(int k, int n) const {
-        const Float* numbers = points.surface[k] + n;
-        return {numbers[0], numbers[1], numbers[2]};
-    }
+    TESSERA_INLINE EyeDirection<Float> eye(int k) const { return {rays, points.x[k], points.y[k]}; }
 };
 
 // From Points::surface to radiance and alpha.
@@ -34,7 +37,7 @@ __attribute__((noinline)) void shade_surfaces(const ShadeConstants& constants, P
     // Copies, which no store can change.
     const ShadingContext context = constants.context;
     const MaterialView material = constants.material;
-    const PointBatch<Layout> batch{Layout::layout(constants.job), points};
+    const PointBatch<Layout> batch{Layout::layout(constants.job), constants.rays, points};
     shade_as<kFamily, kUvSets>(
         context, material, batch, [](int, const LightSample<Float>&, int) { return Float(1.0f); }, points.shaded);
 }
@@ -91,37 +94,37 @@ TESSERA_INLINE bool take_block(const ShadeJob& job, int block, int part, Points&
     return seen != 0;
 }
 
-// Asks for the lines of the picture that a block of the tile will be written to: pictures lie beyond the
-// second-level cache, and eight rows of them are eight places far apart.
-TESSERA_INLINE void fetch_picture(const DevelopJob& job, int block) {
-    const int blocks = job.side / kBlockSide, column = block % blocks * kBlockSide, row = block / blocks * kBlockSide;
-    if (column % 16 != 0 || column >= job.width) return;
-    const unsigned char* at =
-        job.rgba + static_cast<std::size_t>(row) * job.stride + 4 * static_cast<std::size_t>(column);
-    for (int y = row; y < row + kBlockSide && y < job.height; ++y, at += job.stride) __builtin_prefetch(at, 1);
+// One sample a pixel: the display values of a vector of the points.
+TESSERA_INLINE Uint developed(const FilmView& film, const Points& points, int k, Uint background) {
+    const Float zero(0.0f), one(1.0f);
+    if (points.used[k] == kAllLanes) return display_pixels(film, points.shaded[k].radiance, one);
+    if (!points.used[k]) return background;
+    const Mask covered = points.ordinals(k) != Uint(0u);
+    const Vec3T<Float>& c = points.shaded[k].radiance;
+    return display_pixels(film, {select(covered, c.x, zero), select(covered, c.y, zero), select(covered, c.z, zero)},
+                          select(covered, one, zero));
 }
 
-// One sample a pixel: from the radiance of part `part` of the points to a block of the picture.
-__attribute__((noinline)) inline void develop_block(const DevelopJob& job, const Points& points, int part, int block,
-                                                    Uint background) {
-    const Float zero(0.0f), one(1.0f);
+// From the radiance of the points to blocks of the picture.
+__attribute__((noinline)) inline void develop_blocks(const DevelopJob& job, const Points& points, int block,
+                                                     Uint background) {
     const FilmView film = job.film;
     const int blocks = job.side / kBlockSide, column = block % blocks * kBlockSide, row = block / blocks * kBlockSide;
-    for (int i = 0; i < kBlockVectors; ++i) {
-        const int at = i * kLanes<Float>, k = part * kBlockVectors + i;
-        Uint pixels = background;
-        if (points.used[k] == kAllLanes) {
-            pixels = display_pixels(film, points.shaded[k].radiance, one);
-        } else if (points.used[k]) {
-            const Mask covered = points.ordinals(k) != Uint(0u);
-            const Vec3T<Float>& c = points.shaded[k].radiance;
-            pixels = display_pixels(
-                film, {select(covered, c.x, zero), select(covered, c.y, zero), select(covered, c.z, zero)},
-                select(covered, one, zero));
+    const bool streamed =
+        job.streamed && column + kPointBlocks * kBlockSide <= job.width && row + kBlockSide <= job.height;
+    for (int pair = 0; pair < kPointBlocks; pair += 2)
+        for (int i = 0; i < kBlockVectors; ++i) {
+            const int at = i * kLanes<Float>, k = pair * kBlockVectors + i;
+            const int x = column + pair * kBlockSide + at % kBlockSide, y = row + at / kBlockSide;
+            const Uint left = developed(film, points, k, background),
+                       right = developed(film, points, k + kBlockVectors, background);
+            if (streamed) {
+                stream_pixels(left, right, job.rgba, job.stride, x, y);
+            } else {
+                store_pixels(left, job.rgba, job.stride, x, y, job.width, job.height);
+                store_pixels(right, job.rgba, job.stride, x + kBlockSide, y, job.width, job.height);
+            }
         }
-        store_pixels(pixels, job.rgba, job.stride, column + at % kBlockSide, row + at / kBlockSide, job.width,
-                     job.height);
-    }
 }
 
 // Several: adds a block to the sums, or begins them.
@@ -154,7 +157,6 @@ inline void shade_blocks(const ShadeJob& job) {
     const Uint background = job.develop ? display_pixels(job.develop->film, {zero, zero, zero}, zero) : Uint(0u);
     const int blocks = job.side / kBlockSide * (job.side / kBlockSide);
     static_assert(32 / kBlockSide % kPointBlocks == 0, "the smallest tile's rows are whole numbers of them");
-    constexpr int kAhead = 2 * kPointBlocks;
     Points points;
     for (int block = 0; block < blocks; block += kPointBlocks) {
         points.numbers = job.ordinal + block * kBlockPixels;
@@ -164,15 +166,12 @@ inline void shade_blocks(const ShadeJob& job) {
             stages.find(constants, points);
             stages.shade(constants, points);
         }
-        for (int part = 0; part < kPointBlocks; ++part) {
-            if (!job.develop) {
-                add_block(job, points, part, block + part);
-                continue;
-            }
-            fetch_picture(*job.develop, block + part + kAhead);
-            develop_block(*job.develop, points, part, block + part, background);
-        }
+        if (job.develop)
+            develop_blocks(*job.develop, points, block, background);
+        else
+            for (int part = 0; part < kPointBlocks; ++part) add_block(job, points, part, block + part);
     }
+    if (job.develop && job.develop->streamed) flush_streams();
 }
 
 inline void shade_list(const ShadeJob& job) {

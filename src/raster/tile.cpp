@@ -240,6 +240,9 @@ DevelopJob Tile::develop_job() const {
     job.alpha = sum_[3].data();
     job.rgba = task_->targets.rgba ? task_->targets.rgba + 4 * picture_place(0) : nullptr;
     job.stride = 4 * static_cast<std::size_t>(task_->frame.projection.width);
+    constexpr std::size_t kLine = 64, kStays = std::size_t{4} << 20;
+    job.streamed = (reinterpret_cast<std::uintptr_t>(job.rgba) | job.stride) % kLine == 0 &&
+                   job.stride * static_cast<std::size_t>(task_->frame.projection.height) > kStays;
     return job;
 }
 

@@ -26,16 +26,30 @@ TESSERA_COLD F power_by_logarithm(F x, float exponent) {
     return math::pow(x, F(exponent));
 }
 
+// An exponent, looked at once for many powers.
+struct Exponent {
+    float value;
+    int whole = 0;        // or not a whole number
+    int highest_bit = 0;  // of that
+
+    TESSERA_INLINE explicit Exponent(float exponent) : value(exponent) {
+        if (!(exponent >= 1.0f && exponent <= kLargestWholeExponent)) return;
+        const int number = static_cast<int>(exponent);
+        if (static_cast<float>(number) != exponent) return;
+        whole = number;
+        highest_bit = 31 - __builtin_clz(static_cast<unsigned>(number));
+    }
+};
+
 template <class F>
-TESSERA_INLINE F power_cosine(F cosine, float exponent) {
+TESSERA_INLINE F power_cosine(F cosine, const Exponent& exponent) {
     const F x = max(cosine, F(0.0f));
-    const int whole = exponent >= 1.0f && exponent <= kLargestWholeExponent ? static_cast<int>(exponent) : 0;
-    if (static_cast<float>(whole) != exponent || whole == 0) return power_by_logarithm(x, exponent);
+    if (exponent.whole == 0) return power_by_logarithm(x, exponent.value);
     // From the highest bit down (Knuth, The Art of Computer Programming, section 4.6.3).
     F power = x;
-    for (int bit = 30 - __builtin_clz(static_cast<unsigned>(whole)); bit >= 0; --bit) {
+    for (int bit = exponent.highest_bit - 1; bit >= 0; --bit) {
         power = power * power;
-        if (whole >> bit & 1) power = power * x;
+        if (exponent.whole >> bit & 1) power = power * x;
     }
     return power;
 }
@@ -49,9 +63,8 @@ struct HighlightCosine {
 
 // Phong 1975: v.r with r = 2 (n.l) n - l. Blinn 1977: n.h with h = (l + v) / |l + v|.
 template <class F>
-TESSERA_INLINE HighlightCosine<F> highlight_cosine(ShadingModel model, const Vec3T<F>& normal, const Vec3T<F>& view,
-                                                   const Vec3T<F>& to_light, F n_l) {
-    const F n_v = dot(normal, view);
+TESSERA_INLINE HighlightCosine<F> highlight_cosine(ShadingModel model, const Vec3T<F>& view, const Vec3T<F>& to_light,
+                                                   F n_v, F n_l) {
     if (model == ShadingModel::kPhong) return {F(2.0f) * n_l * n_v - dot(view, to_light), F(1.0f)};
     const Vec3T<F> h = to_light + view;
     return {n_l + n_v, dot(h, h)};

@@ -67,6 +67,7 @@ TESSERA_INLINE void shade_textbook(const ShadingContext& context, const Material
                                    Visible&& visible, ShadedPoint<F>* out) {
     constexpr int kCount = Batch::kCount;
     constexpr bool kColored = kUvSets > 0 || Batch::kColored;
+    const Exponent exponent(m.shininess);
     Vec3T<F> color[kCount];
     for (int k = 0; k < kCount; ++k) {
         if (!batch.used(k)) continue;
@@ -98,11 +99,11 @@ TESSERA_INLINE void shade_textbook(const ShadingContext& context, const Material
         for (int k = 0; k < kCount; ++k) {
             if (!batch.used(k)) continue;
             const LightSample<F> sample = sample_light(light, batch.position(k));
-            const Vec3T<F> normal = batch.normal(k);
             strength[k] = sample.strength * visible(i, sample, k);
-            n_l[k] = dot(normal, sample.to_light);
-            if (m.model != ShadingModel::kLambert)
-                highlight[k] = highlight_cosine(m.model, normal, batch.view(k), sample.to_light, n_l[k]);
+            n_l[k] = dot(batch.normal(k), sample.to_light);
+            if (m.model == ShadingModel::kLambert) continue;
+            const Vec3T<F> view = batch.view(k);
+            highlight[k] = highlight_cosine(m.model, view, sample.to_light, dot(batch.normal(k), view), n_l[k]);
         }
         for (int k = 0; k < kCount; ++k) {
             if (!batch.used(k)) continue;
@@ -111,7 +112,7 @@ TESSERA_INLINE void shade_textbook(const ShadingContext& context, const Material
             if constexpr (kColored) diffuse = diffuse * color[k];
             Vec3T<F> sum = out[k].radiance + diffuse;
             if (m.model != ShadingModel::kLambert) {
-                const F power = power_cosine(cosine(m.model, highlight[k]), m.shininess);
+                const F power = power_cosine(cosine(m.model, highlight[k]), exponent);
                 sum = sum + ks * (select(n_l[k] > zero, power, zero) * strength[k]);
             }
             out[k].radiance = sum;

@@ -81,6 +81,27 @@ struct PictureRays {
     }
 };
 
+// The direction to the eye that belongs to a picture position: (x, y, 1), or (x, y, 0) without perspective.
+template <class F>
+struct EyeDirection {
+    F x, y;
+
+    TESSERA_INLINE EyeDirection(const PictureRays& rays, F picture_x, F picture_y)
+        : x(picture_x * F(rays.x_scale) + F(rays.x_offset)), y(picture_y * F(rays.y_scale) + F(rays.y_offset)) {}
+
+    // The position there at a z.
+    TESSERA_INLINE Vec3T<F> position(bool orthographic, F z) const {
+        if (orthographic) return {-x, -y, z};
+        return {x * z, y * z, z};
+    }
+    // The unit direction, from its z with perspective.
+    TESSERA_INLINE F view_z() const { return F(1.0f) / sqrt(x * x + y * y + F(1.0f)); }
+    TESSERA_INLINE Vec3T<F> view(bool orthographic, F z) const {
+        if (orthographic) return {F(0.0f), F(0.0f), F(1.0f)};
+        return {x * z, y * z, z};
+    }
+};
+
 // Distance along the view axis of a reversed depth.
 template <class F>
 TESSERA_INLINE F distance_of_depth(const ProjectionView& p, F depth) {
@@ -226,15 +247,10 @@ TESSERA_INLINE SurfacePoint<F> surface_point(const SurfaceLayout& l, const Pictu
     const Vec3T<F> none = Vec3T<F>::splat(zero), toward_eye{zero, zero, one};
     // A sample beside a sliver of a triangle may lie beyond its horizon: farther than all that is drawn.
     const F minus_w = F(-1.0f) / max(v[0], F(1.0f / kLargestCoordinate)), w = -minus_w;
-    const F eye_x = x * F(rays.x_scale) + F(rays.x_offset), eye_y = y * F(rays.y_scale) + F(rays.y_offset);
-    if (l.depth >= 0) {
-        s.position = {-eye_x, -eye_y, v[l.depth] * minus_w};
-        s.view = toward_eye;
-    } else {
-        s.position = {eye_x * minus_w, eye_y * minus_w, minus_w};
-        const F inverse = one / sqrt(eye_x * eye_x + eye_y * eye_y + one);
-        s.view = {eye_x * inverse, eye_y * inverse, inverse};
-    }
+    const EyeDirection<F> eye(rays, x, y);
+    const bool orthographic = l.depth >= 0;
+    s.position = eye.position(orthographic, orthographic ? v[l.depth] * minus_w : minus_w);
+    s.view = eye.view(orthographic, orthographic ? one : eye.view_z());
     s.side = sample.side;
     s.geometric_normal = s.tangent = s.bitangent = none;
     s.normal =

@@ -78,8 +78,12 @@ TEST_P(FilmKernels, Develop) {
         job.g = planes[1].data();
         job.b = planes[2].data();
         job.alpha = planes[3].data();
-        Window<std::uint32_t> got(static_cast<std::size_t>(width), static_cast<std::size_t>(height), random.below(40)),
-            want(got.width, got.height, got.stride - got.width);
+        job.streamed = round % 32 < 16;
+        const auto w = static_cast<std::size_t>(width), h = static_cast<std::size_t>(height);
+        using Pixels = Window<std::uint32_t>;
+        const std::size_t gap = random.below(40);
+        const auto window = [&] { return job.streamed ? Pixels::on_lines(w, h) : Pixels(w, h, gap); };
+        Pixels got = window(), want = window();
         job.stride = 4 * got.stride;
         job.rgba = reinterpret_cast<std::uint8_t*>(got.pixels.data());
         kernels().develop(job);

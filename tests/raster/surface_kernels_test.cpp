@@ -218,7 +218,9 @@ TEST_P(SurfaceKernels, SamePixelsOfATileDevelopedAtOnce) {
         film.height = part();
         using Pixels = Window<std::uint32_t>;
         const auto w = static_cast<std::size_t>(film.width), h = static_cast<std::size_t>(film.height);
-        Pixels got(w, h, 11), want(w, h, 11), summed(w, h, 11);
+        film.streamed = s.random.below(2);
+        const auto window = [&] { return film.streamed ? Pixels::on_lines(w, h) : Pixels(w, h, 11); };
+        Pixels got = window(), want = window(), summed = window();
         film.stride = 4 * got.stride;
         const auto develop_into = [&](Pixels& p) { film.rgba = reinterpret_cast<std::uint8_t*>(p.pixels.data()); };
         Hits hit_got(job.side), hit_want(job.side);

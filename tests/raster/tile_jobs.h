@@ -117,17 +117,24 @@ struct Window {
     GuardedArray<T> pixels;
     std::size_t stride, width, height;
 
-    Window(std::size_t w, std::size_t h, std::size_t gap)
-        : pixels((h - 1) * (w + gap) + w), stride(w + gap), width(w), height(h) {
-        std::memset(pixels.data(), 0x5a, pixels.size() * sizeof(T));
+    Window(std::size_t w, std::size_t h, std::size_t gap) : Window(w, h, gap, (h - 1) * (w + gap) + w) {}
+    // Every row begins on a cache line, as streams need it.
+    static Window on_lines(std::size_t w, std::size_t h) {
+        const std::size_t line = 64 / sizeof(T), stride = (w + line) / line * line;
+        return {w, h, stride - w, h * stride};
     }
     bool gaps_changed() const {
         std::vector<T> untouched(1);
         std::memset(untouched.data(), 0x5a, sizeof(T));
-        for (std::size_t y = 0; y + 1 < height; ++y)
-            for (std::size_t x = width; x < stride; ++x)
-                if (std::memcmp(&pixels[y * stride + x], untouched.data(), sizeof(T)) != 0) return true;
+        for (std::size_t i = 0; i < pixels.size(); ++i)
+            if (i % stride >= width && std::memcmp(&pixels[i], untouched.data(), sizeof(T)) != 0) return true;
         return pixels.changed();
+    }
+
+  private:
+    Window(std::size_t w, std::size_t h, std::size_t gap, std::size_t size)
+        : pixels(size), stride(w + gap), width(w), height(h) {
+        std::memset(pixels.data(), 0x5a, pixels.size() * sizeof(T));
     }
 };
 
