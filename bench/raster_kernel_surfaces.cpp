@@ -102,9 +102,8 @@ KernelWork shade_tile_work(const std::string& workload, bool uniform, Shade how)
             film = {};
             film.film = tile.settings.film;
             film.weight = 1;
-            film.side = film.width = film.height = tile.side;
+            film.window = whole_tile(tile.side);
             film.rgba = pixels.data();
-            film.stride = 4 * static_cast<std::size_t>(tile.side);
         }
     };
     const auto state = std::make_shared<State>(workload);
@@ -209,10 +208,9 @@ KernelWork develop_work(ToneMap tone_map, Encoding encoding, bool background) {
         job.film.tone_map = tone_map;
         job.film.encoding = encoding;
         job.weight = 1;
-        job.side = job.width = job.height = state->tile.side;
+        job.window = whole_tile(state->tile.side);
         if (!background) state->sums.point(job);
         job.rgba = state->pixels.data();
-        job.stride = 4 * static_cast<std::size_t>(state->tile.side);
         return seconds_of([&] { kernels.develop(job); });
     };
     work.output = [=] {

@@ -83,4 +83,7 @@ class MiddleTile {
     std::vector<TileTriangle> triangles;
 };
 
+// A tile as its own picture.
+inline TileWindow whole_tile(int side) { return {side, side, side, 4 * static_cast<std::size_t>(side), false}; }
+
 }  // namespace tessera::bench

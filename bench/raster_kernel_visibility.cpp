@@ -83,14 +83,13 @@ KernelWork label_work(const std::string& workload) {
         const MiddleTile& t = state->tile;
         LabelJob job{};
         job.projection = t.frame.frame.projection;
-        job.side = job.width = job.height = t.side;
+        job.window = whole_tile(t.side);
         job.depth = t.depth.data();
         job.ordinal = t.ordinal.data();
         job.triangles = t.triangles.data();
         job.instances = t.frame.frame.instances.data();
         job.distance = state->distance.data();
         job.triangle = state->triangle.data();
-        job.stride = static_cast<std::size_t>(t.side);
         return seconds_of([&] { kernels.label(job); });
     };
     work.output = [=] {

@@ -213,29 +213,34 @@ struct ShadeJob {
     float *r, *g, *b, *alpha;  // by pixel, or by point
 };
 
-// Develops a tile: sums over the samples in, display values out. Without sums (r is null): background.
-struct DevelopJob {
-    FilmView film;
-    float weight;             // one over the number of samples
+// Where a tile lies in planes of the picture that have four bytes a pixel.
+struct TileWindow {
     int side, width, height;  // width and height: within the picture
-    const float *r, *g, *b, *alpha;
-    std::uint8_t* rgba;  // the tile's first pixel
-    std::size_t stride;  // bytes from row to row
-    // Whole cache lines go past the caches; rgba and stride are multiples of them. For pictures that do not stay there.
+    std::size_t stride;       // bytes from row to row
+    // Whole cache lines go past the caches: the tile's first pixel and the stride are multiples of them. For planes
+    // that do not stay there.
     bool streamed;
 };
 
-// Writes labels of a tile from its depth and ordinals.
+// Develops a tile: sums over the samples in, display values out. Without sums (r is null): background.
+struct DevelopJob {
+    FilmView film;
+    float weight;  // one over the number of samples
+    const float *r, *g, *b, *alpha;
+    TileWindow window;
+    std::uint8_t* rgba;  // the tile's first pixel
+};
+
+// Writes labels of a tile from its depth and ordinals. Without ordinals: of a tile that shows nothing.
 struct LabelJob {
     ProjectionView projection;
-    int side, width, height;
     const float* depth;
     const std::uint32_t* ordinal;
     const TileTriangle* triangles;
     const InstanceView* instances;
+    TileWindow window;
     float* distance;          // the tile's first pixel; null where not wanted
     std::uint32_t* triangle;  // 1 + number in the frame
-    std::size_t stride;       // pixels from row to row
 };
 
 struct RasterKernels {

@@ -109,22 +109,12 @@ TESSERA_INLINE Uint developed(const FilmView& film, const Points& points, int k,
 __attribute__((noinline)) inline void develop_blocks(const DevelopJob& job, const Points& points, int block,
                                                      Uint background) {
     const FilmView film = job.film;
-    const int blocks = job.side / kBlockSide, column = block % blocks * kBlockSide, row = block / blocks * kBlockSide;
-    const bool streamed =
-        job.streamed && column + kPointBlocks * kBlockSide <= job.width && row + kBlockSide <= job.height;
-    for (int pair = 0; pair < kPointBlocks; pair += 2)
-        for (int i = 0; i < kBlockVectors; ++i) {
-            const int at = i * kLanes<Float>, k = pair * kBlockVectors + i;
-            const int x = column + pair * kBlockSide + at % kBlockSide, y = row + at / kBlockSide;
-            const Uint left = developed(film, points, k, background),
-                       right = developed(film, points, k + kBlockVectors, background);
-            if (streamed) {
-                stream_pixels(left, right, job.rgba, job.stride, x, y);
-            } else {
-                store_pixels(left, job.rgba, job.stride, x, y, job.width, job.height);
-                store_pixels(right, job.rgba, job.stride, x + kBlockSide, y, job.width, job.height);
-            }
-        }
+    const TileWindow window = job.window;
+    const int blocks = window.side / kBlockSide, row = block / blocks * kBlockSide;
+    for (int part = 0; part < kPointBlocks; part += 2)
+        write_pair(job.rgba, window, (block + part) % blocks * kBlockSide, row, [&](int i) TESSERA_INLINE_LAMBDA {
+            return developed(film, points, part * kBlockVectors + i, background);
+        });
 }
 
 // Several: adds a block to the sums, or begins them.
@@ -171,7 +161,7 @@ inline void shade_blocks(const ShadeJob& job) {
         else
             for (int part = 0; part < kPointBlocks; ++part) add_block(job, points, part, block + part);
     }
-    if (job.develop && job.develop->streamed) flush_streams();
+    if (job.develop && job.develop->window.streamed) flush_streams();
 }
 
 inline void shade_list(const ShadeJob& job) {

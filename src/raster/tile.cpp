@@ -172,9 +172,21 @@ void Tile::sort_fragments() {
 
 // --- planes of the picture ----------------------------------------------------------------------
 
+// The tile in planes whose first pixels of it are given, or null.
+TileWindow Tile::window(std::initializer_list<const void*> planes) const {
+    const auto width = static_cast<std::size_t>(task_->frame.projection.width);
+    TileWindow w{side_, width_, height_, 4 * width, false};
+    // More than that does not stay in the caches until somebody reads it.
+    constexpr std::size_t kLine = 64, kStays = std::size_t{4} << 20;
+    w.streamed = w.stride % kLine == 0 && w.stride * static_cast<std::size_t>(task_->frame.projection.height) > kStays;
+    for (const void* plane : planes) w.streamed &= reinterpret_cast<std::uintptr_t>(plane) % kLine == 0;
+    return w;
+}
+
 // Labels at the pixel centre: of the nearest surface with alpha of at least one half. `seen`: the
 // centre is the sample whose visibility stands.
 void Tile::label(bool seen) {
+    if (triangle_count_ == 0) return write_labels(false);
     const SamplePosition centre{128, 128};
     if (!seen) {
         const TileCounters before = counters;
@@ -199,19 +211,20 @@ void Tile::label(bool seen) {
     }
     if (!task_->targets.colors())
         for (const std::uint32_t o : ordinal_) pixels_covered += o != 0;
+    write_labels(true);
+}
+
+void Tile::write_labels(bool something) const {
     LabelJob job{};
     job.projection = task_->frame.projection;
-    job.side = side_;
-    job.width = width_;
-    job.height = height_;
     job.depth = depth_.data();
-    job.ordinal = ordinal_.data();
+    job.ordinal = something ? ordinal_.data() : nullptr;
     job.triangles = triangles_.data();
     job.instances = task_->frame.instances.data();
-    job.stride = static_cast<std::size_t>(task_->frame.projection.width);
     const std::size_t first = picture_place(0);
     job.distance = task_->targets.distance ? task_->targets.distance + first : nullptr;
     job.triangle = task_->targets.triangle ? task_->targets.triangle + first : nullptr;
+    job.window = window({job.distance, job.triangle});
     task_->kernels.label(job);
 }
 
@@ -231,18 +244,12 @@ DevelopJob Tile::develop_job() const {
     DevelopJob job{};
     job.film = task_->settings.film;
     job.weight = 1.0f / static_cast<float>(task_->settings.samples.size());
-    job.side = side_;
-    job.width = width_;
-    job.height = height_;
     job.r = sum_[0].data();
     job.g = sum_[1].data();
     job.b = sum_[2].data();
     job.alpha = sum_[3].data();
     job.rgba = task_->targets.rgba ? task_->targets.rgba + 4 * picture_place(0) : nullptr;
-    job.stride = 4 * static_cast<std::size_t>(task_->frame.projection.width);
-    constexpr std::size_t kLine = 64, kStays = std::size_t{4} << 20;
-    job.streamed = (reinterpret_cast<std::uintptr_t>(job.rgba) | job.stride) % kLine == 0 &&
-                   job.stride * static_cast<std::size_t>(task_->frame.projection.height) > kStays;
+    job.window = window({job.rgba});
     return job;
 }
 

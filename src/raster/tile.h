@@ -6,6 +6,7 @@
 #include "raster/engine.h"
 
 #include <array>
+#include <initializer_list>
 #include <vector>
 
 namespace tessera {
@@ -66,10 +67,12 @@ class Tile {
     void shade_list(SamplePosition offset);
     void compose_fragments(SamplePosition offset);
     void label(bool seen);
+    void write_labels(bool something) const;
     void estimate_cost();
     void inspect();
     void finish_colors();
     void fill_background();
+    TileWindow window(std::initializer_list<const void*> planes) const;
     DevelopJob develop_job() const;
     std::uint32_t number(std::uint32_t ordinal) const;
     std::size_t picture_place(std::uint32_t pixel) const;

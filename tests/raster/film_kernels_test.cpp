@@ -61,9 +61,7 @@ TEST_P(FilmKernels, Develop) {
         job.film = {random.in(0.1f, 3), static_cast<ToneMap>(round % 3), {0.2f, 0.4f, 0.1f, round % 5 ? 1.0f : 0.0f}};
         job.film.encoding = round % 7 ? Encoding::kSrgb : Encoding::kLinear;
         job.weight = 1 / samples;
-        job.side = side;
-        job.width = width;
-        job.height = height;
+        job.window = {side, width, height, 0, round % 32 < 16};
         GuardedArray<float> planes[4] = {GuardedArray<float>(tile_pixels(side)), GuardedArray<float>(tile_pixels(side)),
                                          GuardedArray<float>(tile_pixels(side)),
                                          GuardedArray<float>(tile_pixels(side))};
@@ -78,13 +76,12 @@ TEST_P(FilmKernels, Develop) {
         job.g = planes[1].data();
         job.b = planes[2].data();
         job.alpha = planes[3].data();
-        job.streamed = round % 32 < 16;
         const auto w = static_cast<std::size_t>(width), h = static_cast<std::size_t>(height);
         using Pixels = Window<std::uint32_t>;
         const std::size_t gap = random.below(40);
-        const auto window = [&] { return job.streamed ? Pixels::on_lines(w, h) : Pixels(w, h, gap); };
+        const auto window = [&] { return job.window.streamed ? Pixels::on_lines(w, h) : Pixels(w, h, gap); };
         Pixels got = window(), want = window();
-        job.stride = 4 * got.stride;
+        job.window.stride = 4 * got.stride;
         job.rgba = reinterpret_cast<std::uint8_t*>(got.pixels.data());
         kernels().develop(job);
         job.rgba = reinterpret_cast<std::uint8_t*>(want.pixels.data());
@@ -115,17 +112,18 @@ TEST_P(FilmKernels, Labels) {
         job.projection = world.projection;
         job.projection.orthographic = round % 5 == 0;
         job.projection.clip_from_camera[10] = round % 5 == 0 ? 0.1f : 0.01f;
-        job.side = side;
-        job.width = width;
-        job.height = height;
+        job.window = {side, width, height, 0, round % 8 < 4};
         job.depth = depth.data();
-        job.ordinal = ordinal.data();
+        job.ordinal = round % 11 ? ordinal.data() : nullptr;  // without: a tile that shows nothing
         job.triangles = triangles.data();
         job.instances = instances.data();
         const auto w = static_cast<std::size_t>(width), h = static_cast<std::size_t>(height);
-        Window<float> distance_got(w, h, 9), distance_want(w, h, 9);
-        Window<std::uint32_t> number_got(w, h, 9), number_want(w, h, 9);
-        job.stride = number_got.stride;
+        const auto window = [&]<class T>(T) {
+            return job.window.streamed ? Window<T>::on_lines(w, h) : Window<T>(w, h, 9);
+        };
+        Window<float> distance_got = window(0.0f), distance_want = window(0.0f);
+        Window<std::uint32_t> number_got = window(0u), number_want = window(0u);
+        job.window.stride = 4 * number_got.stride;
         const bool with_distance = round % 3 != 1, with_numbers = round % 3 != 2;
         job.distance = with_distance ? distance_got.pixels.data() : nullptr;
         job.triangle = with_numbers ? number_got.pixels.data() : nullptr;
@@ -138,7 +136,7 @@ TEST_P(FilmKernels, Labels) {
         ASSERT_FALSE(distance_got.gaps_changed() || number_got.gaps_changed()) << round;
         for (int y = 0; y < height && with_numbers; ++y)  // by definition
             for (int x = 0; x < width; ++x) {
-                const std::uint32_t o = ordinal[place_of(x, y, side)];
+                const std::uint32_t o = job.ordinal ? ordinal[place_of(x, y, side)] : 0;
                 const std::uint32_t number =
                     number_got.pixels[static_cast<std::size_t>(y) * number_got.stride + static_cast<std::size_t>(x)];
                 ASSERT_EQ(number, o == 0 ? 0 : 1000 * triangles[o - 1].instance + triangles[o - 1].triangle + 1);
