@@ -61,6 +61,7 @@ class Tile {
     void clear_depth();
     void find_visible(SamplePosition offset);
     void sort_fragments();
+    std::uint32_t list_visible();
     void make_records();
     void take_sample(SamplePosition offset, bool first);
     void shade_opaque(SamplePosition offset, bool first, Planes& planes);

@@ -5,22 +5,39 @@
 
 namespace tessera {
 
-// Surface records of everything seen, in runs of one instance.
-void Tile::make_records() {
+// The ordinals that need a surface record, in order, to visible_, with 0 at the end; their count.
+std::uint32_t Tile::list_visible() {
+    std::uint32_t* const list = visible_.reserve(triangle_count_ + 1);
+    std::uint32_t count = 0;
+    // Few triangles of one instance: to prepare them all costs less than to look for those that are seen.
+    const auto pixels = static_cast<std::uint32_t>(side_ * side_);
+    const TileTriangle* const triangles = triangles_.data();
+    if (triangle_count_ <= pixels / 64 && triangles[0].instance == triangles[triangle_count_ - 1].instance) {
+        while (count < triangle_count_) list[count] = count + 1, ++count;
+        list[count] = 0;
+        return count;
+    }
     VisibleJob visible{};
     visible.ordinal = ordinal_.data();
     visible.pixels = side_ * side_;
     visible.triangle_count = triangle_count_;
     visible.seen = seen_.reserve(triangle_count_ + 1);
-    visible.list = visible_.reserve(triangle_count_ + 1);
+    visible.list = list;
     task_->kernels.find_visible(visible);
-    std::uint32_t count = visible.count;
+    count = visible.count;
     if (!fragments_.empty()) {
         for (const Fragment& f : fragments_) seen_[f.ordinal] = 1;
         count = 0;
         for (std::uint32_t i = 1; i <= triangle_count_; ++i)
-            if (seen_[i]) visible_[count++] = i;
+            if (seen_[i]) list[count++] = i;
     }
+    list[count] = 0;
+    return count;
+}
+
+// Surface records of everything seen, in runs of one instance.
+void Tile::make_records() {
+    const std::uint32_t count = list_visible();
     std::uint32_t* record_of = record_of_.reserve(triangle_count_ + 1);
     record_of[0] = 0;
     batch_.reserve(count);
@@ -44,7 +61,6 @@ void Tile::make_records() {
         used += job.count * floats;
         first = end;
     }
-    visible_[count] = 0;
 }
 
 ShadeJob Tile::shade_job(std::uint32_t instance) const {
