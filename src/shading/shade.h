@@ -77,14 +77,16 @@ TESSERA_INLINE void shade_textbook(const ShadingContext& context, const Material
         Vec3T<F> emission = Vec3T<F>::load(m.emission);
         F alpha(m.base_color[3]);
         if constexpr (kColored) {
-            const SurfacePoint<F> s = batch.point(k);
-            const Vec4T<F> c = surface_color<kUvSets>(m, s);
+            // The point is read anew for every input: kept, it would lie in memory a second time.
+            const Vec4T<F> c = surface_color<kUvSets>(m, batch.point(k));
             color[k] = c.xyz();
             alpha = alpha * c.w;
             radiance = radiance * color[k];
-            if (kUvSets > 0) {
-                radiance = radiance * occlusion<kUvSets>(m, s);
-                emission = emission * read_input<kUvSets>(m, TextureSlot::kEmissive, s).xyz();
+            if constexpr (kUvSets > 0) {
+                if (m.input(TextureSlot::kOcclusion).texture)
+                    radiance = radiance * occlusion<kUvSets>(m, batch.point(k));
+                if (m.input(TextureSlot::kEmissive).texture)
+                    emission = emission * read_input<kUvSets>(m, TextureSlot::kEmissive, batch.point(k)).xyz();
             }
         }
         out[k].radiance = radiance + emission;
