@@ -1,12 +1,10 @@
 // Textures, samplers and pictures. The bytes of the pictures are gathered first; then they are decoded
 // in parallel. Only pictures that a material uses are read.
-#include "core/parallel.h"
 #include "load/gltf_parts.h"
+#include "load/pictures.h"
 #include "load/uri.h"
 
-#include <algorithm>
-#include <exception>
-#include <memory>
+#include <utility>
 
 namespace tessera {
 namespace {
@@ -60,63 +58,19 @@ Sampler read_sampler(GltfDocument& document, const Json& json) {
     return sampler;
 }
 
-// One picture on its way from the file to pixels.
-struct PictureJob {
-    std::size_t picture = 0;
-    Json json;
-    Bytes owned;
-    std::span<const std::byte> bytes;
-    std::shared_ptr<Image> pixels;
-    std::exception_ptr failure;
-};
-
-bool begins_with(std::span<const std::byte> bytes, std::string_view magic) {
-    return bytes.size() >= magic.size() &&
-           std::equal(magic.begin(), magic.end(), reinterpret_cast<const char*>(bytes.data()));
-}
-
-// Formats that extensions bring; files that use them are drawn without these pictures.
-std::string_view foreign_format(std::span<const std::byte> bytes) {
-    if (begins_with(bytes, "RIFF") && bytes.size() >= 12 && begins_with(bytes.subspan(8), "WEBP")) return "WebP";
-    if (begins_with(bytes, "\xabKTX 20\xbb")) return "KTX2";
-    if (begins_with(bytes, "DDS ")) return "DDS";
-    if (bytes.size() >= 12 && begins_with(bytes.subspan(4), "ftypavif")) return "AVIF";
-    return {};
-}
-
-PictureJob gather(GltfDocument& document, std::size_t index) {
-    PictureJob job{index, document.item(GltfArray::kImages, index), {}, {}, {}, {}};
-    if (const std::optional<Json> uri = job.json.find("uri")) {
-        job.owned = document.read_uri(*uri);
-        job.bytes = job.owned.span();
+PictureFile gather(GltfDocument& document, std::size_t index) {
+    const Json json = document.item(GltfArray::kImages, index);
+    PictureFile file{index, json.place(), {}, {}, {}};
+    if (const std::optional<Json> uri = json.find("uri")) {
+        file.name = uri->string().substr(0, 60);
+        file.owned = document.read_uri(*uri);
+        file.bytes = file.owned.span();
     } else {
-        const Json view = job.json.at("bufferView");
+        const Json view = json.at("bufferView");
         const int number = view.reference(document.size(GltfArray::kBufferViews), "buffer view");
-        job.bytes = document.view(static_cast<std::size_t>(number)).bytes;
+        file.bytes = document.view(static_cast<std::size_t>(number)).bytes;
     }
-    return job;
-}
-
-// What decode_image() throws, with the place of the picture.
-template <class F>
-auto with_place(const Json& json, F&& f) {
-    try {
-        return f();
-    } catch (const Error& error) {
-        const std::optional<Json> uri = json.find("uri");
-        const std::string name = uri ? std::string(uri->string().substr(0, 60)) + ": " : std::string();
-        json.fail(name + error.message(), error.code());
-    }
-}
-
-void charge_pixels(LoadContext& context, const PictureJob& job) {
-    const ImageInfo info = with_place(job.json, [&] { return read_image_info(job.bytes); });
-    const std::uint64_t pixels = static_cast<std::uint64_t>(info.width) * static_cast<std::uint64_t>(info.height);
-    if (pixels > context.options().max_pixels)
-        job.json.fail("a picture of " + std::to_string(info.width) + " x " + std::to_string(info.height) +
-                          " pixels, the limit is " + std::to_string(context.options().max_pixels) + " pixels",
-                      ErrorCode::kLimit);
-    context.charge(pixels * (info.bits > 8 ? 8 : 4), job.json.place());
+    return file;
 }
 
 std::vector<char> used_pictures(const Scene& scene) {
@@ -159,36 +113,12 @@ void read_textures(GltfDocument& document, Scene& scene) {
 }
 
 void read_pictures(GltfDocument& document, Scene& scene) {
-    LoadContext& context = document.context();
-    if (!context.options().load_pictures) return;
+    if (!document.context().options().load_pictures) return;
     const std::vector<char> used = used_pictures(scene);
-    std::vector<PictureJob> jobs;
-    for (std::size_t i = 0; i < used.size(); ++i) {
-        if (!used[i]) continue;
-        PictureJob job = gather(document, i);
-        if (const std::string_view format = foreign_format(job.bytes); !format.empty()) {
-            context.warn(job.json.place() + ": pictures in " + std::string(format) + " are not read");
-            continue;
-        }
-        charge_pixels(context, job);
-        jobs.push_back(std::move(job));
-    }
-    if (jobs.empty()) return;
-    Arena arena(context.options().threads);
-    arena.for_each(jobs.size(), [&](std::size_t i) {
-        PictureJob& job = jobs[i];
-        try {
-            job.pixels = with_place(job.json, [&] {
-                return std::make_shared<Image>(decode_image(job.bytes, context.options().max_pixels, true));
-            });
-        } catch (...) {
-            job.failure = std::current_exception();
-        }
-    });
-    // Of several failures the first in the file is reported, whichever thread was faster.
-    for (const PictureJob& job : jobs)
-        if (job.failure) std::rethrow_exception(job.failure);
-    for (PictureJob& job : jobs) scene.pictures[job.picture].pixels = std::move(job.pixels);
+    std::vector<PictureFile> files;
+    for (std::size_t i = 0; i < used.size(); ++i)
+        if (used[i]) files.push_back(gather(document, i));
+    decode_pictures(document.context(), std::move(files), scene, PictureFaults::kFail);
 }
 
 }  // namespace tessera

@@ -5,6 +5,10 @@
 #include "load/file.h"
 #include "load/glb.h"
 #include "load/gltf.h"
+#include "load/obj.h"
+#include "load/obj_text.h"
+#include "load/ply.h"
+#include "load/stl.h"
 
 #include <new>
 #include <stdexcept>
@@ -29,18 +33,24 @@ bool has_extension(std::string_view name, std::string_view extension) {
     return true;
 }
 
-// By content; where that says nothing, the extension decides what the error is about.
+// By content first; OBJ and ASCII STL have no mark of their own, so there the extension comes first.
 Scene read_any(LoadContext& context, std::span<const std::byte> file, const std::string& folder) {
     const std::string_view text(reinterpret_cast<const char*>(file.data()), file.size());
     if (is_glb(file)) {
         const GlbChunks chunks = split_glb(context, file);
         return read_gltf(context, chunks.json, chunks.binary, folder);
     }
-    if (looks_like_json(text)) return read_gltf(context, text, std::nullopt, folder);
+    if (is_ply(file)) return read_ply(context, file);
+    if (has_extension(context.file(), ".obj")) return read_obj(context, text, folder);
     if (file.empty()) context.fail("the file is empty");
+    if (has_extension(context.file(), ".stl") || is_binary_stl(file)) return read_stl(context, file);
+    if (looks_like_json(text)) return read_gltf(context, text, std::nullopt, folder);
     if (has_extension(context.file(), ".gltf")) context.fail("not a glTF file: it does not begin with \"{\"");
     if (has_extension(context.file(), ".glb")) context.fail("not a GLB file: it does not begin with \"glTF\"");
-    context.fail("not a scene format that Tessera reads (glTF 2.0: .gltf, .glb)");
+    if (has_extension(context.file(), ".ply")) context.fail("not a PLY file: it does not begin with \"ply\"");
+    if (is_ascii_stl(file)) return read_stl(context, file);
+    if (looks_like_obj(text)) return read_obj(context, text, folder);
+    context.fail("not a scene format that Tessera reads (glTF 2.0: .gltf, .glb; .obj; .ply; .stl)");
 }
 
 // Memory that runs out below the configured limit is a limit too.

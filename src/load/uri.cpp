@@ -67,18 +67,23 @@ std::optional<std::string> real_path(const std::string& path) {
     context.fail("\"" + name + "\": " + std::generic_category().message(errno), place);
 }
 
-// `path` relative to the scene's folder, after the rules that need no file system.
-std::string checked_path(const LoadContext& context, std::string_view uri, const std::string& place) {
-    const std::string shown(uri.substr(0, 200));
-    if (has_scheme(uri)) context.fail("\"" + shown + "\": only relative and data: URIs are read", place);
-    std::string path = percent_decode(context, uri, place);
-    if (path.empty()) context.fail("the URI is empty", place);
-    if (path.find('\0') != std::string::npos) context.fail("\"" + shown + "\": zero character in a URI", place);
-    if (path.find('\\') != std::string::npos) context.fail("\"" + shown + "\": backslash in a URI", place);
+// The rules for paths below the scene's folder that need no file system. `shown` stands for it in errors.
+void check_path(const LoadContext& context, std::string_view path, const std::string& shown, const std::string& place) {
+    if (path.empty()) context.fail("the name of a file is empty", place);
+    if (path.find('\0') != std::string::npos) context.fail("\"" + shown + "\": zero character in a path", place);
+    if (path.find('\\') != std::string::npos) context.fail("\"" + shown + "\": backslash in a path", place);
     if (path.front() == '/') context.fail("\"" + shown + "\": absolute paths are not read", place);
     // Decoded, it could still be read as a scheme by somebody else; here a colon is only a character.
     for (const std::string& part : components_of(path))
         if (part == "..") context.fail("\"" + shown + "\": leaves the scene's folder", place);
+}
+
+// The path that a URI says.
+std::string checked_path(const LoadContext& context, std::string_view uri, const std::string& place) {
+    const std::string shown(uri.substr(0, 200));
+    if (has_scheme(uri)) context.fail("\"" + shown + "\": only relative and data: URIs are read", place);
+    std::string path = percent_decode(context, uri, place);
+    check_path(context, path, shown, place);
     return path;
 }
 
@@ -126,7 +131,12 @@ Bytes decode_data_uri(LoadContext& context, std::string_view uri, const std::str
 
 FileHandle open_below(const LoadContext& context, const std::string& folder, std::string_view uri,
                       const std::string& place) {
-    const std::string path = checked_path(context, uri, place);
+    return open_path_below(context, folder, checked_path(context, uri, place), place);
+}
+
+FileHandle open_path_below(const LoadContext& context, const std::string& folder, const std::string& path,
+                           const std::string& place) {
+    check_path(context, path, path.substr(0, 200), place);
     if (folder.empty()) context.fail("\"" + path + "\": a scene without a folder cannot name files", place);
     const std::optional<std::string> base = real_path(folder);
     if (!base) fail_with_errno(context, folder, place);

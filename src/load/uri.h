@@ -23,4 +23,8 @@ std::string percent_decode(const LoadContext& context, std::string_view text, co
 FileHandle open_below(const LoadContext& context, const std::string& folder, std::string_view uri,
                       const std::string& place);
 
+// The same for a plain path, in which nothing is escaped.
+FileHandle open_path_below(const LoadContext& context, const std::string& folder, const std::string& path,
+                           const std::string& place);
+
 }  // namespace tessera

@@ -15,10 +15,10 @@ TEST(Sniffing, ContentDecides) {
     EXPECT_NE(load_error("").find("empty"), std::string::npos);
     EXPECT_NE(load_error("[1]"), "");
     EXPECT_NE(load_error("{"), "");
-    const std::string ply = "ply\nformat ascii 1.0\n";
+    const std::string fbx = "Kaydara FBX Binary";
     try {
-        load_scene_from_memory(as_file(ply), "", {}, "a.ply");
-        FAIL() << "PLY is not read";
+        load_scene_from_memory(as_file(fbx), "", {}, "a.fbx");
+        FAIL() << "FBX is not read";
     } catch (const Error& error) {
         EXPECT_EQ(error.code(), ErrorCode::kInput);
         EXPECT_EQ(error.message().substr(0, 39), "not a scene format that Tessera reads (");

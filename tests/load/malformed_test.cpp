@@ -1,4 +1,4 @@
-// Every hostile or odd glTF and GLB of the corpus gives what its manifest says.
+// Every hostile or odd scene file of the corpus gives what its manifest says.
 #include "test_files.h"
 
 #include <tessera/error.h>

@@ -1,5 +1,5 @@
-// The glTF reader against an independent one (assimp): for every model the same primitives, vertices,
-// faces, bounds and material factors.
+// The readers against independent ones (assimp): for every glTF model the same primitives, vertices,
+// faces, bounds and material factors; for the other formats the same triangles.
 #include "test_files.h"
 
 #include <tessera/error.h>
@@ -9,11 +9,14 @@
 
 #ifdef TESSERA_HAS_ASSIMP
 #include <assimp/material.h>
+#include <assimp/postprocess.h>
 #include <assimp/scene.h>
 
 #include <assimp/Importer.hpp>
 
+#include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace tessera {
 namespace {
@@ -179,6 +182,57 @@ TEST_P(Oracle, ReadsTheSame) {
     EXPECT_EQ(ours.animations.size(), theirs->mNumAnimations);
 }
 
+class MeshOracle : public testing::TestWithParam<std::string> {};
+
+// OBJ, PLY and STL: the two readers share vertices and name objects in their own ways, but draw the same.
+TEST_P(MeshOracle, DrawsTheSame) {
+    const Scene ours = load_scene(GetParam());
+    Assimp::Importer importer;
+    const aiScene* theirs = importer.ReadFile(GetParam(), aiProcess_Triangulate);
+    if (!theirs) GTEST_SKIP() << "assimp: " << importer.GetErrorString();
+    std::uint64_t triangles = 0, their_triangles = 0;
+    double area = 0, their_area = 0;
+    Bounds3 bounds, their_bounds;
+    const auto area_of = [](const Vec3& a, const Vec3& b, const Vec3& c) {
+        const double e[3] = {double(b.x) - a.x, double(b.y) - a.y, double(b.z) - a.z};
+        const double f[3] = {double(c.x) - a.x, double(c.y) - a.y, double(c.z) - a.z};
+        const double x = e[1] * f[2] - e[2] * f[1], y = e[2] * f[0] - e[0] * f[2], z = e[0] * f[1] - e[1] * f[0];
+        return std::sqrt(x * x + y * y + z * z) / 2;
+    };
+    for (const Mesh& mesh : ours.meshes)
+        for (const Primitive& p : mesh.primitives) {
+            if (p.mode != PrimitiveMode::kTriangles) continue;
+            for (const std::vector<std::uint32_t>& f : faces_of(p)) {
+                ++triangles;
+                area += area_of(p.positions[f[0]], p.positions[f[1]], p.positions[f[2]]);
+                for (const std::uint32_t v : f) bounds.add(p.positions[v]);
+            }
+        }
+    for (unsigned m = 0; m < theirs->mNumMeshes; ++m) {
+        const aiMesh& mesh = *theirs->mMeshes[m];
+        for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
+            if (mesh.mFaces[f].mNumIndices != 3) continue;
+            ++their_triangles;
+            Vec3 p[3];
+            for (unsigned k = 0; k < 3; ++k) {
+                const aiVector3D& v = mesh.mVertices[mesh.mFaces[f].mIndices[k]];
+                p[k] = {v.x, v.y, v.z};
+                their_bounds.add(p[k]);
+            }
+            their_area += area_of(p[0], p[1], p[2]);
+        }
+    }
+    EXPECT_EQ(triangles, their_triangles);
+    EXPECT_NEAR(area, their_area, 1e-5 * area);
+    const double size =
+        std::max({bounds.max.x - bounds.min.x, bounds.max.y - bounds.min.y, bounds.max.z - bounds.min.z});
+    for (const auto& [a, b] : {std::pair(bounds.min, their_bounds.min), std::pair(bounds.max, their_bounds.max)}) {
+        EXPECT_NEAR(a.x, b.x, 1e-6 * size);
+        EXPECT_NEAR(a.y, b.y, 1e-6 * size);
+        EXPECT_NEAR(a.z, b.z, 1e-6 * size);
+    }
+}
+
 std::string test_name(const testing::TestParamInfo<std::string>& info) {
     std::string name = info.param;
     for (char& c : name)
@@ -186,6 +240,12 @@ std::string test_name(const testing::TestParamInfo<std::string>& info) {
     return name;
 }
 
+std::string file_test_name(const testing::TestParamInfo<std::string>& info) {
+    return test_name({std::filesystem::path(info.param).filename().string(), info.index});
+}
+
+INSTANTIATE_TEST_SUITE_P(Models, MeshOracle, testing::ValuesIn(all_mesh_models()), file_test_name);
+GTEST_ALLOW_UNINSTANTIATED_PARAMETERIZED_TEST(MeshOracle);
 INSTANTIATE_TEST_SUITE_P(Models, Oracle, testing::ValuesIn(all_gltf_models()), test_name);
 GTEST_ALLOW_UNINSTANTIATED_PARAMETERIZED_TEST(Oracle);
 

@@ -6,9 +6,11 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <initializer_list>
 #include <sstream>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace tessera {
@@ -32,11 +34,32 @@ inline std::vector<std::string> all_gltf_models() {
     return names;
 }
 
+// Every file with one of the extensions below models/FOLDER, sorted, with its path.
+inline std::vector<std::string> models_in(const std::string& sub_folder,
+                                          std::initializer_list<const char*> extensions) {
+    std::vector<std::string> names;
+    std::error_code none;
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(test_folder() / "models" / sub_folder, none))
+        for (const char* extension : extensions)
+            if (entry.path().extension() == extension) names.push_back(entry.path().string());
+    std::sort(names.begin(), names.end());
+    return names;
+}
+
+// The OBJ, PLY and STL files.
+inline std::vector<std::string> all_mesh_models() {
+    std::vector<std::string> names = models_in("obj", {".obj"});
+    for (const char* format : {"ply", "stl"})
+        for (std::string& name : models_in(format, {std::string(format) == "ply" ? ".ply" : ".stl"}))
+            names.push_back(std::move(name));
+    return names;
+}
+
 struct MalformedCase {
     std::string file, expected;
 };
 
-// The cases of malformed/MANIFEST.csv that are glTF or GLB: path and expectation (error, clean,
+// The cases of malformed/MANIFEST.csv that are scene files: path and expectation (error, clean,
 // error-or-clean) are its first and fourth column, which are never quoted.
 inline std::vector<MalformedCase> malformed_cases() {
     std::vector<MalformedCase> cases;
@@ -49,8 +72,10 @@ inline std::vector<MalformedCase> malformed_cases() {
         std::getline(columns, bytes, ',');
         std::getline(columns, sha, ',');
         std::getline(columns, expected, ',');
-        if ((file.ends_with(".gltf") || file.ends_with(".glb")) && !expected.starts_with("("))
-            cases.push_back({file, expected});
+        bool is_scene = false;
+        for (const char* extension : {".gltf", ".glb", ".obj", ".ply", ".stl", ".off"})
+            is_scene = is_scene || file.ends_with(extension);
+        if (is_scene && !expected.starts_with("(")) cases.push_back({file, expected});
     }
     return cases;
 }
