@@ -15,8 +15,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     options.max_triangles = 1 << 20;
     options.threads = 1;
     try {
-        const tessera::Scene scene = tessera::load_scene_from_memory(
-            {reinterpret_cast<const std::byte*>(data), size}, "", options, TESSERA_FUZZED);
+        const tessera::Scene scene = tessera::load_scene_from_memory({reinterpret_cast<const std::byte*>(data), size},
+                                                                     "", options, TESSERA_FUZZED);
         tessera::validate(scene);
         std::uint64_t triangles = 0;
         for (const tessera::Mesh& mesh : scene.meshes)

@@ -11,7 +11,7 @@ import sys
 import tempfile
 
 sys.dont_write_bytecode = True  # the scenes' folder holds scenes
-from gltf_builder import Document, about, box, cylinder, moved, pixels_of, quad, sphere, write_png
+from gltf_builder import Document, about, box, cylinder, lathe, moved, pixels_of, quad, sphere, sub, unit, write_png
 
 PHONG = "TESSERA_materials_phong"
 UNLIT = "KHR_materials_unlit"
@@ -281,8 +281,74 @@ def transparency():
     return doc
 
 
+def motion():
+    """A tentacle (skin), a ball that bounces and flattens (translation, morph), a windmill (rotation)."""
+    doc = Document("Motion: a skin, a morph, a hierarchy")
+    floor = doc.material("floor", srgb("#b9c1c9"), roughness=0.9)
+    green = doc.material("green", srgb("#4f9d4a"), roughness=0.45)
+    red = doc.material("red", srgb("#c8402f"), roughness=0.35)
+    wood = doc.material("wood", srgb("#8a6a48"), roughness=0.7)
+    sail = doc.material("sail", srgb("#e9e2d0"), roughness=0.8)
+    doc.node("floor", mesh=doc.mesh("floor", quad([0, 0, 0], [9, 0, 0], [0, 0, -9]), floor))
+
+    # Five joints, half a metre apart; each ring of vertices follows the two that it lies between.
+    bones, step, tip = 5, 0.5, 0.12
+    rings = [(0.34 - (0.34 - tip) * i / 40, bones * step * i / 40, 1, 0.1, 1 - i / 40) for i in range(40, -1, -1)]
+    shape = lathe([(0.0, bones * step, 0, 1, 0.0), (tip, bones * step, 0, 1, 0.0)] + rings, 32)
+    tentacle = doc.mesh("tentacle", shape, green)
+    joints, parent = [], doc.node("tentacle root", translation=[-1.7, 0, 0])
+    for i in range(bones):
+        parent = doc.node(f"joint {i}", parent, translation=[0, step if i else 0, 0])
+        joints.append(parent)
+
+    def influences(height):
+        t = min(max(height / step - 0.5, 0), bones - 1)
+        low = min(int(t), bones - 2)
+        return [(low, 1 - (t - low)), (low + 1, t - low)]
+
+    skin = doc.skin(tentacle, "tentacle", joints,
+                    [[1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, -step * i, 0, 1] for i in range(bones)],
+                    [influences(p[1]) for p in shape[0]])
+    doc.node("tentacle", mesh=tentacle, skin=skin)
+
+    radius = 0.55
+    round_ball = sphere(radius, 48, 24)
+    ball = doc.mesh("ball", round_ball, red)
+    flat = [[x * 1.3, y * 0.55, z * 1.3] for x, y, z in round_ball[0]]
+    doc.morph(ball, "flat ball", [sub(f, p) for f, p in zip(flat, round_ball[0])],
+              [sub(unit([n[0] / 1.3, n[1] / 0.55, n[2] / 1.3]), n) for n in round_ball[1]])
+    ball_node = doc.node("ball", translation=[0.35, radius, 0.6], mesh=ball)
+
+    tower = doc.node("tower", translation=[2.2, 0, -0.6], mesh=doc.mesh("tower", cylinder(0.5, 0.3, 2.1, 0.03), wood))
+    hub = doc.node("hub", tower, translation=[0, 1.85, 0.45])
+    blade = doc.mesh("blade", moved(box([0.24, 1.15, 0.03], 0.012), [0.06, 0.7, 0]), sail)
+    axle = doc.mesh("axle", sphere(0.11, 24, 12), wood)
+    doc.node("axle", hub, mesh=axle)
+    for i in range(4):
+        doc.node(f"blade {i}", hub, rotation=about([0, 0, 1], 90.0 * i), mesh=blade)
+
+    channels = []
+    for i, joint in enumerate(joints):  # a wave that climbs
+        swing = [22 * math.sin(math.pi / 2 * k - 0.8 * i) * (0.4 + 0.2 * i) for k in range(5)]
+        channels.append((joint, "rotation", "LINEAR", [0.5 * k for k in range(5)],
+                         [about([0.3, 0, 1], s) for s in swing]))
+    rest, top = radius * 0.55, 2.2  # up and down again as a parabola: splines of its tangents
+    channels.append((ball_node, "translation", "CUBICSPLINE", [0, 0.2, 1, 1.8, 2],
+                     [v for y, enter, leave in ((rest, 0, 0), (radius, 4.1, 4.1), (top, 0, 0), (radius, -4.1, -4.1),
+                                                (rest, 0, 0))
+                      for v in ([0, enter, 0], [0.35, y, 0.6], [0, leave, 0])]))
+    channels.append((ball_node, "weights", "LINEAR", [0, 0.2, 1.8, 2], [[1], [0], [0], [1]]))
+    channels.append((hub, "rotation", "LINEAR", [0.5 * k for k in range(5)],
+                     [about([0, 0, 1], -90.0 * k) for k in range(5)]))
+    doc.animation("everything", channels)
+    doc.light("sun", "directional", (1, 0.95, 0.87), 8.0, [4, 7, 4], [0, 0, 0])
+    doc.light("sky", "directional", (0.74, 0.85, 1), 2.8, [-4, 3, 5], [0, 0, 0])
+    doc.camera("main", [0.4, 2.6, 8.4], [0.3, 1.4, 0], 32)
+    return doc
+
+
 SCENES = {"cornell-box": cornell_box, "spheres": spheres, "lights": lights, "materials": materials,
-          "hierarchy": hierarchy, "transparency": transparency}
+          "hierarchy": hierarchy, "transparency": transparency, "motion": motion}
 
 
 def make_all(folder):

@@ -235,25 +235,26 @@ class Document:
     def __init__(self, title):
         self.title, self.data, self.extensions = title, bytearray(), set()
         self.parts = {k: [] for k in ("nodes", "meshes", "materials", "textures", "samplers", "images", "cameras",
-                                      "accessors", "bufferViews")}
+                                      "skins", "animations", "accessors", "bufferViews")}
         self.lights, self.roots, self.shapes = [], [], {}
 
     def add(self, kind, item):
         self.parts[kind].append(clean(item))
         return len(self.parts[kind]) - 1
 
-    def accessor(self, name, rows, kind, component, target):
+    def accessor(self, name, rows, kind, component, target=None):
         form = "<%d%s" % (len(rows[0]), "f" if component == FLOAT else "H")
         packed = b"".join(struct.pack(form, *(clean(list(r)))) for r in rows)
         self.data += b"\0" * (-len(self.data) % 4)
-        view = self.add("bufferViews", {"name": name, "buffer": 0, "byteOffset": len(self.data),
-                                        "byteLength": len(packed), "target": target})
+        view = {"name": name, "buffer": 0, "byteOffset": len(self.data), "byteLength": len(packed)}
+        view = self.add("bufferViews", {**view, "target": target} if target else view)
         self.data += packed
         count = len(rows) * (len(rows[0]) if kind == "SCALAR" else 1)
         item = {"name": name, "bufferView": view, "componentType": component, "count": count, "type": kind}
-        if name.endswith("positions"):
+        if name.endswith(("positions", "times")):
             # The bounds of the stored floats, not of the numbers before rounding to single precision.
-            stored = [struct.unpack(form, packed[i:i + 12]) for i in range(0, len(packed), 12)]
+            size = 4 * len(rows[0])
+            stored = [struct.unpack(form, packed[i:i + size]) for i in range(0, len(packed), size)]
             self.parts["accessors"].append({**item, "min": [min(c) for c in zip(*stored)],
                                             "max": [max(c) for c in zip(*stored)]})
             return len(self.parts["accessors"]) - 1
@@ -272,6 +273,39 @@ class Document:
                     "TEXCOORD_0": self.accessor(key + " uvs", uvs, "VEC2", FLOAT, ARRAY_BUFFER)},
                 "indices": self.accessor(key + " indices", triangles, "SCALAR", USHORT, ELEMENT_ARRAY_BUFFER)}
         return self.add("meshes", {"name": name, "primitives": [{**self.shapes[key], "material": material}]})
+
+    def morph(self, mesh, name, positions, normals):
+        """Adds a target to the mesh's primitive: what its vertices move and its normals change by."""
+        primitive = self.parts["meshes"][mesh]["primitives"][0]
+        primitive.setdefault("targets", []).append({
+            "POSITION": self.accessor(name + " moved positions", positions, "VEC3", FLOAT, ARRAY_BUFFER),
+            "NORMAL": self.accessor(name + " normals", normals, "VEC3", FLOAT, ARRAY_BUFFER)})
+        self.parts["meshes"][mesh].setdefault("weights", []).append(0)
+
+    def skin(self, mesh, name, joints, inverse_bind, influences):
+        """`influences`: per vertex a list of up to four (joint, weight). Returns the skin."""
+        rows = [list(i) + [(0, 0.0)] * (4 - len(i)) for i in influences]
+        attributes = dict(self.parts["meshes"][mesh]["primitives"][0]["attributes"])
+        attributes["JOINTS_0"] = self.accessor(name + " joints", [[j for j, _ in r] for r in rows], "VEC4", USHORT,
+                                               ARRAY_BUFFER)
+        attributes["WEIGHTS_0"] = self.accessor(name + " weights", [[float(w) for _, w in r] for r in rows], "VEC4",
+                                                FLOAT, ARRAY_BUFFER)
+        self.parts["meshes"][mesh]["primitives"][0]["attributes"] = attributes
+        return self.add("skins", {"name": name, "joints": joints, "inverseBindMatrices": self.accessor(
+            name + " inverse bind matrices", inverse_bind, "MAT4", FLOAT)})
+
+    def animation(self, name, channels):
+        """`channels`: (node, path, interpolation, times, values), values by key; of cubic splines three each."""
+        samplers, targets = [], []
+        for number, (node, path, interpolation, times, values) in enumerate(channels):
+            label = f"{name} {number}"
+            kind = {"rotation": "VEC4", "weights": "SCALAR"}.get(path, "VEC3")
+            samplers.append({"input": self.accessor(label + " times", [[float(t)] for t in times], "SCALAR", FLOAT),
+                             "output": self.accessor(label + " values", [[float(x) for x in v] for v in values], kind,
+                                                     FLOAT),
+                             "interpolation": interpolation})
+            targets.append({"sampler": number, "target": {"node": node, "path": path}})
+        return self.add("animations", {"name": name, "samplers": samplers, "channels": targets})
 
     def node(self, name, parent=None, **properties):
         index = self.add("nodes", {"name": name, **properties})

@@ -26,7 +26,8 @@ TESSERA_API const char* name(Engine engine);
 
 // Where the camera stands. Exactly one way is used: `camera` (an index into Scene::cameras, at the
 // first node that carries it), else `eye`/`target`, else the scene's first camera, else the visible
-// bounds framed in a three-quarter view.
+// bounds framed in a three-quarter view: where an animation is chosen, those of the whole of it, so that
+// the camera stands still.
 struct View {
     std::optional<int> camera;
     std::optional<Vec3> eye, target;
@@ -42,6 +43,16 @@ struct View {
 
     friend bool operator==(const View&, const View&) = default;
 };
+
+// A moment of a scene's animations. Before the first key of a channel and after its last one, their values hold.
+inline constexpr int kEveryAnimation = -2;
+struct Moment {
+    int animation = kNone;  // index into Scene::animations, kEveryAnimation, or kNone: as the nodes stand in the scene
+    double time = 0;        // seconds
+    friend bool operator==(const Moment&, const Moment&) = default;
+};
+// The time of the last key, in seconds; 0 without any.
+TESSERA_API double duration(const Animation& animation);
 
 enum class Lighting : std::uint8_t {
     kAuto,    // the scene's lights, or the studio when it has none
@@ -78,6 +89,7 @@ struct RenderOptions {
     int width = 1024, height = 768;  // pixels, 1 .. kMaxImageSide
     Engine engine = Engine::kRaster;
     View view;
+    Moment moment;
     Lighting lighting = Lighting::kAuto;
     // Uniform ambient radiance; unset: the scene's, else the studio's own, or a twentieth of the exposed
     // white for a scene's lights.
@@ -141,7 +153,7 @@ struct RenderResult {
 
 TESSERA_API RenderResult render(const Scene& scene, const RenderOptions& options = {});
 
-// World-space box of everything that would be drawn.
+// World-space box of everything that would be drawn, of the scene as it stands.
 TESSERA_API Bounds3 visible_bounds(const Scene& scene);
 
 }  // namespace tessera

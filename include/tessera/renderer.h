@@ -19,12 +19,14 @@ class TESSERA_API Renderer {
     Renderer(Renderer&& other) noexcept;
     Renderer& operator=(Renderer&& other) noexcept;
 
-    // Draws from the options' view, or from another one. Planes of `result` that have the right size and
-    // format are written over, the others replaced: give it the same one again, and no picture is
-    // allocated. Its statistics and warnings are those of this frame; color_hash is left 0. After an
-    // exception the planes hold nothing of use.
+    // Draws from the options' view at their moment, or from another one. Planes of `result` that have the right size
+    // and format are written over, the others replaced: give it the same one again, and no picture is allocated. Its
+    // statistics and warnings are those of this frame; color_hash is left 0. After an exception the planes hold nothing
+    // of use.
     void draw(RenderResult& result);
     void draw(const View& view, RenderResult& result);
+    // At another moment. What does not move is not made again.
+    void draw(const View& view, const Moment& moment, RenderResult& result);
 
     const RenderOptions& options() const;
 

@@ -1,6 +1,7 @@
 #include "cli/render_arguments.h"
 
 #include "cli/parse.h"
+#include "cli/pattern.h"
 
 #include <tessera/error.h>
 
@@ -59,6 +60,31 @@ Stage parse_stage(const RenderArguments& a, const RenderOptions& render) {
     if (render.engine != Engine::kRaster) refuse("--show", "needs --engine raster: " + a.engine + " has no tiles");
     if (render.filter != PixelFilter::kBox) refuse("--show", "needs --filter box");
     return stage;
+}
+
+void parse_animation(const RenderArguments& a, RenderJob& job) {
+    job.animation = a.animation;
+    if (!a.time.empty()) job.time = parse_number("--time", a.time, -1e9, 1e9);
+    job.skip_existing = a.skip_existing;
+    const double fps = parse_number("--fps", a.fps, 1e-3, 1e6);
+    if (a.frames.empty()) {
+        if (a.skip_existing) refuse("--skip-existing", "needs --frames");
+        if (has_place(a.output, "frame")) refuse("--output", "{frame} needs --frames");
+        return;
+    }
+    if (job.time) refuse("--time", "excludes --frames");
+    const std::size_t dash = a.frames.find('-');
+    Frames frames;
+    frames.fps = fps;
+    frames.first = static_cast<long>(parse_integer("--frames", a.frames.substr(0, dash), 0, 9999999));
+    frames.last = dash == std::string::npos
+                      ? frames.first
+                      : static_cast<long>(parse_integer("--frames", a.frames.substr(dash + 1), 0, 9999999));
+    if (frames.last < frames.first) refuse("--frames", "ends before it begins");
+    if (a.output.empty() || a.output == "-" || !has_place(a.output, "frame"))
+        refuse("--output", "with --frames it must say where the number goes, as in frame_{frame:04}.png");
+    fill_pattern("--output", a.output, {{"frame", frames.first}});
+    job.frames = frames;
 }
 
 Codec parse_codec(const std::string& output) {
@@ -127,7 +153,14 @@ void add_render_options(CLI::App& app, RenderArguments& a) {
     option("Picture", "--tone-map", a.tone_map, "NAME", "neutral (Khronos PBR Neutral, default), aces or none");
     option("Picture", "--encoding", a.encoding, "NAME",
            "srgb (default), or linear: 8-bit linear values, to compare with renderers that do not encode");
-    option("Picture", "--time", a.time, "S", "seconds into the animation: only 0 is possible yet");
+
+    option("Animation", "--time", a.time, "S", "seconds into the animation (default: the scene as it stands)");
+    option("Animation", "--animation", a.animation, "NAME|INDEX|all", "which one plays (default: the first)");
+    option("Animation", "--frames", a.frames, "A-B",
+           "pictures number A to B, at A/fps to B/fps seconds; -o then says where the number goes: f_{frame:04}.png");
+    option("Animation", "--fps", a.fps, "N", "frames per second (default 24)");
+    app.add_flag("--skip-existing", a.skip_existing, "with --frames: leave out pictures that are there already")
+        ->group("Animation");
 
     option("Camera", "--camera", a.camera, "NAME|INDEX", "one of the scene's cameras (default: the first)");
     option("Camera", "--eye", a.eye, "X,Y,Z", "stand here instead (default: three-quarter view of the whole)");
@@ -154,6 +187,7 @@ void add_render_options(CLI::App& app, RenderArguments& a) {
         "  tessera render model.glb -o model.png\n"
         "  tessera render model.glb -o - -s 256x256 --background none > thumbnail.png\n"
         "  tessera render room.gltf -o room.jpg --engine reference-trace --camera front --samples 16\n"
+        "  tessera render robot.glb -o walk_{frame:03}.png --frames 0-47 --animation Walk\n"
         "  tessera render model.glb -o model.png --eye 3,2,4 --target 0,1,0 --fov 35 --stats model.json\n"
         "\nThe color_hash of --stats is the same on every machine, for every --isa and for every --threads.");
 }
@@ -184,10 +218,8 @@ RenderJob parse_render_arguments(const RenderArguments& a) {
         "--tone-map", a.tone_map, {{"neutral", ToneMap::kNeutral}, {"aces", ToneMap::kAces}, {"none", ToneMap::kNone}});
     render.encoding =
         choose<Encoding>("--encoding", a.encoding, {{"srgb", Encoding::kSrgb}, {"linear", Encoding::kLinear}});
-    if (parse_number("--time", a.time, 0, 1e9) != 0)
-        refuse("--time", "animation does not exist yet; only 0 is possible");
-
     job.camera = a.camera;
+    parse_animation(a, job);
     render.view = parse_view(a, job.z_is_up);
 
     render.lighting =

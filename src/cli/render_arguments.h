@@ -15,13 +15,14 @@ namespace tessera::cli {
 
 struct RenderArguments {
     std::string scene, output, stats;
-    std::string size = "1024x768", engine = "raster", samples = "4", filter = "box", aov = "color", time = "0";
+    std::string size = "1024x768", engine = "raster", samples = "4", filter = "box", aov = "color";
+    std::string time, animation, frames, fps = "24";
     std::string camera, eye, target, up = "y", fov;
     std::string show, background = "white", exposure = "auto", tone_map = "neutral", encoding = "srgb", color_bits;
     std::string lighting = "auto", ambient;
     std::string threads, isa = "auto", quality = "92", png_level = "1";
     std::string max_triangles, max_pixels, max_memory, timeout;
-    bool no_shadows = false, quiet = false;
+    bool no_shadows = false, quiet = false, skip_existing = false;
 };
 
 // The engine that --engine names.
@@ -31,11 +32,20 @@ void add_render_options(CLI::App& app, RenderArguments& arguments);
 
 enum class Codec { kPng, kJpeg };
 
-// The arguments with their meaning. `camera` stays text: it names a part of the scene.
+// Numbered pictures of an animation, at first / fps to last / fps seconds.
+struct Frames {
+    long first = 0, last = 0;
+    double fps = 24;
+};
+
+// The arguments with their meaning. `camera` and `animation` stay text: they name parts of the scene.
 struct RenderJob {
     LoadOptions load;
     RenderOptions render;
-    std::string camera;
+    std::string camera, animation;
+    std::optional<double> time;    // seconds
+    std::optional<Frames> frames;  // a sequence
+    bool skip_existing = false;
     bool z_is_up = false;
     Codec codec = Codec::kPng;
     int quality = 92, png_level = 1;

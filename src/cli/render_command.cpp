@@ -3,6 +3,8 @@
 #include "cli/deadline.h"
 #include "cli/exit_code.h"
 #include "cli/files.h"
+#include "cli/parse.h"
+#include "cli/pattern.h"
 #include "cli/render_arguments.h"
 #include "cli/report.h"
 #include "cli/scene_input.h"
@@ -10,9 +12,14 @@
 
 #include <tessera/tessera.h>
 
+#include <unistd.h>
+
 #include <chrono>
 #include <memory>
 #include <mutex>
+#include <optional>
+#include <utility>
+#include <vector>
 
 namespace tessera::cli {
 namespace {
@@ -44,62 +51,134 @@ void place_view(RenderJob& job, Scene& scene) {
     }
 }
 
-RenderResult render_scene(RenderJob& job, const Scene& scene, Deadline& deadline, bool quiet) {
-    ProgressBar bar(!quiet);
-    std::mutex bar_mutex;
-    if (bar.active())
-        job.render.progress = [&](double done) {
-            const std::lock_guard lock(bar_mutex);
-            bar.show(done);
-        };
-    if (job.timeout) job.render.cancel = [&] { return deadline.expired(); };
+// Which moment of which animation, once the scene is there to ask.
+void choose_moment(RenderJob& job, const Scene& scene) {
+    if (job.animation.empty() && !job.time && !job.frames) return;
+    if (scene.animations.empty())
+        refuse(job.time ? "--time" : job.frames ? "--frames" : "--animation", "the scene has no animations");
+    job.render.moment.animation = job.animation.empty() ? 0 : find_animation(scene, job.animation);
+    job.render.moment.time = job.time.value_or(0);
+}
+
+// Calls `work`, whose rendering asks for the time; what it throws when it was cancelled becomes the option's error.
+template <class Work>
+void within(Deadline& deadline, Work&& work) {
     deadline.allow_grace();
     try {
-        return render(scene, job.render);
+        work();
     } catch (const Error& error) {
         if (error.code() != ErrorCode::kCancelled) throw;
         throw Error(ErrorCode::kCancelled, deadline.message());
     }
 }
 
+// Reduces, encodes and writes a picture. Returns the milliseconds that took.
+double write_picture(const RenderJob& job, RenderResult& result, const std::string& output) {
+    if (job.color_bits) {
+        const auto [red, green, blue] = *job.color_bits;
+        result.color = quantize_true_color(result.color, red, green, blue);
+    }
+    result.stats.color_hash = hash_pixels(result.color);
+    const Stopwatch encoding;
+    if (output.empty()) return 0;
+    PngOptions png;
+    png.level = job.png_level;
+    write_output(output,
+                 job.codec == Codec::kJpeg ? encode_jpeg(result.color, job.quality) : encode_png(result.color, png));
+    return encoding.milliseconds();
+}
+
+std::string output_of(const std::string& pattern, long frame) {
+    return fill_pattern("--output", pattern, {{"frame", frame}});
+}
+
+// Draws and writes one picture after the other, and remembers what happened for the statistics.
+class Sequence {
+  public:
+    Sequence(RenderJob& job, const Scene& scene, const RenderArguments& arguments)
+        : job_(job), scene_(scene), arguments_(arguments), bar_(!arguments.quiet) {
+        if (bar_.active())
+            job.render.progress = [this](double done) {
+                const std::lock_guard lock(bar_mutex_);
+                bar_.show((static_cast<double>(drawn_) + done) / static_cast<double>(pictures()));
+            };
+    }
+
+    // Without --frames there is one.
+    long pictures() const { return job_.frames ? job_.frames->last - job_.frames->first + 1 : 1; }
+
+    void run(Deadline& deadline, CommandTimes times, const Stopwatch& total) {
+        if (job_.timeout) job_.render.cancel = [&] { return deadline.expired(); };
+        std::optional<Renderer> renderer;
+        RenderResult result;
+        for (; drawn_ < pictures(); ++drawn_) {
+            std::string output = arguments_.output;
+            Moment moment = job_.render.moment;
+            if (job_.frames) {
+                const long frame = job_.frames->first + drawn_;
+                output = output_of(arguments_.output, frame);
+                moment.time = static_cast<double>(frame) / job_.frames->fps;
+                if (job_.skip_existing && ::access(output.c_str(), F_OK) == 0) continue;
+            }
+            within(deadline, [&] {
+                if (!job_.frames) {
+                    result = render(scene_, job_.render);
+                    return;
+                }
+                if (!renderer) renderer.emplace(scene_, job_.render);
+                renderer->draw(job_.render.view, moment, result);
+            });
+            if (drawn_ + 1 == pictures()) deadline.disarm();
+            result.warnings.insert(result.warnings.begin(), scene_.warnings.begin(), scene_.warnings.end());
+            if (!arguments_.quiet && !reported_) report_warnings(input_name(arguments_.scene), result.warnings);
+            reported_ = true;
+            if (!arguments_.quiet && job_.render.show != Stage::kPicture) report_stage(job_.render, result);
+            times.encode_ms = write_picture(job_, result, output);
+            times.total_ms = total.milliseconds();
+            if (!arguments_.stats.empty())
+                statistics_.push_back(statistics_json(input_name(arguments_.scene), job_.render, result, times));
+        }
+    }
+
+    // One object, or with --frames a list of them.
+    std::string statistics() const {
+        if (!job_.frames) return statistics_.empty() ? "{}" : statistics_.front();
+        std::string list = "[";
+        for (std::size_t i = 0; i < statistics_.size(); ++i) list += (i == 0 ? "\n" : ",\n") + statistics_[i];
+        return list + "]\n";
+    }
+
+  private:
+    RenderJob& job_;
+    const Scene& scene_;
+    const RenderArguments& arguments_;
+    ProgressBar bar_;
+    std::mutex bar_mutex_;
+    long drawn_ = 0;
+    bool reported_ = false;
+    std::vector<std::string> statistics_;
+};
+
 int run(const RenderArguments& arguments) {
     const Stopwatch total;
     RenderJob job = parse_render_arguments(arguments);
     if (static_cast<std::uint64_t>(job.render.width) * static_cast<std::uint64_t>(job.render.height) > job.max_picture)
         throw Error(ErrorCode::kLimit, "--size: more pixels than --max-pixels allows");
-    if (!arguments.output.empty()) check_writable(arguments.output);
+    if (!arguments.output.empty())
+        check_writable(job.frames ? output_of(arguments.output, job.frames->first) : arguments.output);
     if (!arguments.stats.empty()) check_writable(arguments.stats);
 
-    const std::string file = input_name(arguments.scene);
-    Deadline deadline(job.timeout, file);
+    Deadline deadline(job.timeout, input_name(arguments.scene));
     CommandTimes times;
-
     const Stopwatch loading;
     Scene scene = load_input(arguments.scene, job.load);
     times.load_ms = loading.milliseconds();
+    choose_moment(job, scene);
     place_view(job, scene);
 
-    RenderResult result = render_scene(job, scene, deadline, arguments.quiet);
-    deadline.disarm();
-    if (job.color_bits) {
-        const auto [red, green, blue] = *job.color_bits;
-        result.color = quantize_true_color(result.color, red, green, blue);
-        result.stats.color_hash = hash_pixels(result.color);
-    }
-    result.warnings.insert(result.warnings.begin(), scene.warnings.begin(), scene.warnings.end());
-    if (!arguments.quiet) report_warnings(file, result.warnings);
-    if (!arguments.quiet && job.render.show != Stage::kPicture) report_stage(job.render, result);
-
-    if (!arguments.output.empty()) {
-        const Stopwatch encoding;
-        PngOptions png;
-        png.level = job.png_level;
-        write_output(arguments.output, job.codec == Codec::kJpeg ? encode_jpeg(result.color, job.quality)
-                                                                 : encode_png(result.color, png));
-        times.encode_ms = encoding.milliseconds();
-    }
-    times.total_ms = total.milliseconds();
-    if (!arguments.stats.empty()) write_output(arguments.stats, statistics_json(file, job.render, result, times));
+    Sequence sequence(job, scene, arguments);
+    sequence.run(deadline, times, total);
+    if (!arguments.stats.empty()) write_output(arguments.stats, sequence.statistics());
     return kFine;
 }
 

@@ -7,9 +7,34 @@
 
 #include <algorithm>
 #include <charconv>
+#include <optional>
 #include <utility>
+#include <vector>
 
 namespace tessera::cli {
+namespace {
+
+std::optional<int> index_below(const std::string& text, int count) {
+    int index = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), index);
+    const bool number = error == std::errc{} && end == text.data() + text.size();
+    if (number && index >= 0 && index < count) return index;
+    return std::nullopt;
+}
+
+template <class Part>
+[[noreturn]] void refuse_unknown(const std::string& option, const std::string& what, const std::string& text,
+                                 const std::vector<Part>& parts) {
+    std::string reason = "the scene has no " + what + " '" + text + "'";
+    constexpr std::size_t kListed = 12;
+    for (std::size_t i = 0; i < std::min(parts.size(), kListed); ++i)
+        reason += (i == 0 ? "; there are: " : ", ") + std::to_string(i) +
+                  (parts[i].name.empty() ? "" : " '" + parts[i].name + "'");
+    if (parts.size() > kListed) reason += ", ...";
+    refuse(option, reason);
+}
+
+}  // namespace
 
 std::string input_name(const std::string& path) { return path == "-" ? "<stdin>" : path; }
 
@@ -31,19 +56,17 @@ int find_camera(const Scene& scene, const std::string& text) {
     for (const Node& node : scene.nodes)
         if (node.camera != kNone && node.name == text) return node.camera;
 
-    int index = 0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), index);
-    const bool number = error == std::errc{} && end == text.data() + text.size();
-    if (number && index >= 0 && index < count) return index;
+    if (const std::optional<int> index = index_below(text, count)) return *index;
+    refuse_unknown("--camera", "camera", text, scene.cameras);
+}
 
-    std::string reason = "the scene has no camera '" + text + "'";
-    constexpr int kListed = 12;
-    for (int i = 0; i < std::min(count, kListed); ++i) {
-        const std::string& name = scene.cameras[static_cast<std::size_t>(i)].name;
-        reason += (i == 0 ? "; there are: " : ", ") + std::to_string(i) + (name.empty() ? "" : " '" + name + "'");
-    }
-    if (count > kListed) reason += ", ...";
-    refuse("--camera", reason);
+int find_animation(const Scene& scene, const std::string& text) {
+    if (scene.animations.empty()) refuse("--animation", "the scene has no animations");
+    for (std::size_t i = 0; i < scene.animations.size(); ++i)
+        if (scene.animations[i].name == text) return static_cast<int>(i);
+    if (text == "all") return kEveryAnimation;
+    if (const std::optional<int> index = index_below(text, static_cast<int>(scene.animations.size()))) return *index;
+    refuse_unknown("--animation", "animation", text, scene.animations);
 }
 
 Vec3 turn_z_up(Vec3 p) { return {p.x, p.z, -p.y}; }

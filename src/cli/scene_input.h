@@ -2,6 +2,7 @@
 #pragma once
 
 #include <tessera/load.h>
+#include <tessera/render.h>
 
 #include <string>
 
@@ -17,6 +18,10 @@ std::string input_name(const std::string& path);
 // The index of the camera that `text` names (its own name, that of a node which carries it, or a
 // number); kUsage with the names that there are otherwise.
 int find_camera(const Scene& scene, const std::string& text);
+
+// The index of the animation that `text` names (its name or a number), or kEveryAnimation for "all"; kUsage
+// with the names that there are otherwise.
+int find_animation(const Scene& scene, const std::string& text);
 
 // Turns a scene whose up axis is Z into one with Y up, exactly: (x, y, z) becomes (x, z, -y).
 void turn_z_up(Scene& scene);

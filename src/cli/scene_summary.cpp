@@ -26,14 +26,6 @@ std::uint64_t triangle_count(const Primitive& primitive) {
     }
 }
 
-// Seconds from 0 to the last key.
-double duration(const Animation& animation) {
-    float last = 0;
-    for (const AnimationSampler& sampler : animation.samplers)
-        if (!sampler.times.empty()) last = std::max(last, sampler.times.back());
-    return last;
-}
-
 const char* type_name(const Camera& camera) {
     return camera.type == Camera::Type::kPerspective ? "perspective" : "orthographic";
 }

@@ -3,6 +3,7 @@
 #include "core/fp_environment.h"
 #include "geometry/matrix.h"
 #include "geometry/node_transforms.h"
+#include "geometry/prepared_scene.h"
 #include "geometry/triangles.h"
 
 #include <tessera/render.h>
@@ -73,6 +74,15 @@ MeshPoints drawn_points(const Mesh& mesh) {
     return result;
 }
 
+// Whether vertices are elsewhere than in the arrays of the scene.
+bool is_deformed(const Scene& scene) {
+    if (!scene.skins.empty()) return true;
+    for (const Mesh& mesh : scene.meshes)
+        for (const Primitive& p : mesh.primitives)
+            if (is_morphed(p)) return true;
+    return false;
+}
+
 }  // namespace
 
 std::vector<Vec3> used_positions(const Primitive& primitive) {
@@ -98,6 +108,11 @@ Bounds3 transformed_bounds(const Primitive& primitive, const glm::dmat4& to_worl
 
 Bounds3 visible_bounds(const Scene& scene) {
     const FpEnvironment exact;
+    if (is_deformed(scene)) {
+        Box box;
+        PreparedScene(scene).visit_points([&](const glm::dvec3& p) { box.add(p); });
+        return rounded(box);
+    }
     const NodeTransforms nodes = node_transforms(scene);
     std::vector<MeshPoints> meshes(scene.meshes.size());
     Box box;

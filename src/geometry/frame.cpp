@@ -22,15 +22,15 @@ FrameCamera camera_of(PreparedScene& scene, const View& view, int width, int hei
 }
 
 // What all meshes at one node share.
-InstanceView instance_at(int node, const glm::dmat4& node_to_camera, const glm::dmat4& node_to_clip) {
+InstanceView instance_at(const PreparedNode& node, const glm::dmat4& node_to_camera, const glm::dmat4& node_to_clip) {
     InstanceView instance{};
     store_rows(node_to_clip, 4, instance.object_to_clip);
     store_rows(node_to_camera, 3, instance.object_to_camera);
     const glm::dmat3 normals = normal_matrix(node_to_camera);
     for (int r = 0; r < 3; ++r)
         for (int c = 0; c < 3; ++c) instance.normal_to_camera[3 * r + c] = static_cast<float>(normals[c][r]);
-    instance.handedness = determinant_sign(node_to_camera) < 0 ? -1.0f : 1.0f;
-    instance.node = static_cast<std::uint32_t>(node);
+    instance.handedness = (determinant_sign(node_to_camera) < 0) != node.mirrored ? -1.0f : 1.0f;
+    instance.node = static_cast<std::uint32_t>(node.node);
     return instance;
 }
 
@@ -52,17 +52,17 @@ void make_frame(PreparedScene& scene, const View& view, int width, int height, F
     std::uint64_t triangles = 0;
     bool skipped_mode = false;
     for (const PreparedNode& node : scene.nodes()) {
-        const glm::dmat4 node_to_camera = camera.world_to_camera * scene.world(node.node);
+        const glm::dmat4 node_to_camera = camera.world_to_camera * node.world;
         if (node.light != kNone) frame.lights.push_back({node.light, node_to_camera});
         if (!node.has_mesh) continue;
-        const glm::dmat4 node_to_clip = camera.node_to_clip(scene.world(node.node), node_to_camera);
+        const glm::dmat4 node_to_clip = camera.node_to_clip(node.world, node_to_camera);
         // Nothing can be said of where such a mesh is.
         if (!is_finite(node_to_clip) || !is_finite(to_dmat4(to_mat4(node_to_clip)))) {
             frame.warnings.push_back("node " + std::to_string(node.node) + ": its placement overflows; not drawn");
             continue;
         }
         skipped_mode = skipped_mode || node.has_undrawn;
-        InstanceView instance = instance_at(node.node, node_to_camera, node_to_clip);
+        InstanceView instance = instance_at(node, node_to_camera, node_to_clip);
         for (std::uint32_t i = node.first; i < node.placement_end; ++i) {
             const Placement& placement = scene.placements()[i];
             instance.mesh = placement.mesh->view;

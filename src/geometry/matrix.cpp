@@ -55,7 +55,7 @@ bool is_finite(const glm::dmat4& m) {
     return true;
 }
 
-glm::dmat4 rotation_matrix(Quat rotation) {
+glm::dmat4 rotation_matrix(const glm::dvec4& rotation) {
     const double qx = rotation.x, qy = rotation.y, qz = rotation.z, qw = rotation.w;
     const double squared = qx * qx + qy * qy + qz * qz + qw * qw;
     const double s = squared > 0 ? 2 / squared : 0;  // 2 q q* / |q|^2: needs no square root
@@ -66,13 +66,18 @@ glm::dmat4 rotation_matrix(Quat rotation) {
     return m;
 }
 
-glm::dmat4 compose_matrix(Vec3 translation, Quat rotation, Vec3 scale) {
+glm::dmat4 compose_matrix(const glm::dvec3& translation, const glm::dvec4& rotation, const glm::dvec3& scale) {
     glm::dmat4 m = rotation_matrix(rotation);
-    m[0] *= static_cast<double>(scale.x);
-    m[1] *= static_cast<double>(scale.y);
-    m[2] *= static_cast<double>(scale.z);
-    m[3] = glm::dvec4(to_dvec3(translation), 1);
+    m[0] *= scale.x;
+    m[1] *= scale.y;
+    m[2] *= scale.z;
+    m[3] = glm::dvec4(translation, 1);
     return m;
+}
+
+glm::dmat4 compose_matrix(Vec3 translation, Quat rotation, Vec3 scale) {
+    return compose_matrix(to_dvec3(translation), glm::dvec4(rotation.x, rotation.y, rotation.z, rotation.w),
+                          to_dvec3(scale));
 }
 
 std::optional<glm::dmat4> inverse_matrix(const glm::dmat4& m) {

@@ -32,8 +32,10 @@ inline glm::dvec3 transform_point(const glm::dmat4& m, const glm::dvec3& p) {
 }
 
 // translation * rotation * scale. The quaternion is normalised first; the zero one is the identity.
+glm::dmat4 compose_matrix(const glm::dvec3& translation, const glm::dvec4& rotation, const glm::dvec3& scale);
 glm::dmat4 compose_matrix(Vec3 translation, Quat rotation, Vec3 scale);
-glm::dmat4 rotation_matrix(Quat rotation);
+glm::dmat4 rotation_matrix(const glm::dvec4& rotation);  // x, y, z, w
+inline glm::dmat4 rotation_matrix(Quat q) { return rotation_matrix(glm::dvec4(q.x, q.y, q.z, q.w)); }
 
 // Gauss-Jordan with pivoting on the equilibrated matrix. Empty when singular (a pivot below 1e-13 of
 // its row and column) or when the inverse is not finite.

@@ -12,6 +12,13 @@ glm::dmat4 local_matrix(const Node& node) {
 }
 
 NodeTransforms node_transforms(const Scene& scene) {
+    std::vector<glm::dmat4> local;
+    local.reserve(scene.nodes.size());
+    for (const Node& node : scene.nodes) local.push_back(local_matrix(node));
+    return node_transforms(scene, local);
+}
+
+NodeTransforms node_transforms(const Scene& scene, const std::vector<glm::dmat4>& local_matrices) {
     const FpEnvironment exact;
     NodeTransforms result;
     result.world.assign(scene.nodes.size(), glm::dmat4(1));
@@ -31,7 +38,7 @@ NodeTransforms node_transforms(const Scene& scene) {
         const Pending next = stack.back();
         stack.pop_back();
         const auto i = static_cast<std::size_t>(next.node);
-        const glm::dmat4 local = local_matrix(scene.nodes[i]);
+        const glm::dmat4& local = local_matrices[i];
         result.world[i] = next.parent == kNone ? local : result.world[static_cast<std::size_t>(next.parent)] * local;
         result.visited[i] = 1;
         result.order.push_back(next.node);

@@ -21,5 +21,7 @@ glm::dmat4 local_matrix(const Node& node);
 
 // Matrices may be non-finite where scales multiply beyond the range of double.
 NodeTransforms node_transforms(const Scene& scene);
+// With these matrices to the parents, by node, in place of the scene's.
+NodeTransforms node_transforms(const Scene& scene, const std::vector<glm::dmat4>& local);
 
 }  // namespace tessera

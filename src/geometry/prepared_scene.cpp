@@ -1,73 +1,16 @@
 #include "geometry/prepared_scene.h"
 
+#include "geometry/animation.h"
 #include "geometry/bounds.h"
 #include "geometry/matrix.h"
-#include "geometry/normals.h"
-#include "geometry/tangents.h"
-#include "geometry/texture_transform.h"
 
 #include <algorithm>
 #include <array>
 #include <bit>
 #include <set>
-#include <span>
 
 namespace tessera {
 namespace {
-
-template <class T>
-const float* floats(const std::vector<T>& v) {
-    return v.empty() ? nullptr : reinterpret_cast<const float*>(v.data());
-}
-
-Bounds3 bounds_of(std::span<const Vec3> points) {
-    Bounds3 b;
-    for (const Vec3& p : points) b.add(p);
-    return b;
-}
-
-// Tangents for the texture coordinates that the normal texture is sampled with: transformed, where its
-// reference turns or mirrors them. Moving and scaling evenly leave tangents as they are.
-Primitive with_tangents_for(const Primitive& p, const TextureRef& normal_map) {
-    const auto set = static_cast<std::size_t>(normal_map.uv_set);
-    const bool same_frame = normal_map.rotation == 0 && normal_map.scale.x > 0 && normal_map.scale.y > 0;
-    if (same_frame || set >= p.texcoords.size()) return with_tangents(p, normal_map.uv_set);
-    Primitive mapped = p;
-    float m[6];
-    texture_transform(normal_map, m);
-    std::vector<Vec2> uv = p.texcoords[set];
-    for (Vec2& t : uv) t = {m[0] * t.x + m[1] * t.y, m[3] * t.x + m[4] * t.y};
-    mapped.texcoords.push_back(std::move(uv));
-    mapped = with_tangents(mapped, static_cast<int>(p.texcoords.size()));
-    mapped.texcoords.pop_back();
-    return mapped;
-}
-
-// Adds the normals and tangents that drawing with this material needs and the file lacks.
-Primitive complete(const Primitive& p, const Material* material) {
-    Primitive made;
-    if (p.normals.empty()) made = with_flat_normals(p);
-    const TextureRef* normal_map = material ? &material->texture(TextureSlot::kNormal) : nullptr;
-    if (normal_map && normal_map->texture != kNone) {
-        const Primitive& current = made.positions.empty() ? p : made;
-        if (current.tangents.empty()) made = with_tangents_for(current, *normal_map);
-    }
-    return made;
-}
-
-MeshView view_of(const PreparedMesh& mesh) {
-    const Primitive& p = mesh.primitive();
-    MeshView v{};
-    v.positions = floats(p.positions);
-    v.normals = floats(p.normals);
-    v.tangents = floats(p.tangents);
-    for (std::size_t i = 0; i < p.texcoords.size() && i < kMaxUvSets; ++i) v.uvs[i] = floats(p.texcoords[i]);
-    if (!p.colors.empty()) v.colors = floats(p.colors[0]);
-    v.triangles = mesh.triangles.indices().data();
-    v.triangle_count = static_cast<std::uint32_t>(mesh.triangles.count());
-    v.vertex_count = static_cast<std::uint32_t>(p.positions.size());
-    return v;
-}
 
 // Whether a second copy at the same place would be hidden by the first one, sample by sample.
 bool is_solid(const Scene& scene, const Primitive& p) {
@@ -94,42 +37,65 @@ class PlacesTaken {
 
 }  // namespace
 
-PreparedMesh::PreparedMesh(Primitive&& m, const Primitive& s)
-    : made(std::move(m)),
-      source(&s),
-      triangles(primitive()),
-      bounds(bounds_of(primitive().positions)),
-      view(view_of(*this)) {
-    if (view.triangle_count == 0) return;
-    std::uint32_t low = view.triangles[0], high = low;
-    for (std::size_t i = 0; i < 3 * std::size_t{view.triangle_count}; ++i) {
-        low = std::min(low, view.triangles[i]);
-        high = std::max(high, view.triangles[i]);
-    }
-    lowest_vertex = low;
-    highest_vertex = high;
+PreparedScene::PreparedScene(const Scene& scene, Arena* arena, Isa isa) : scene_(scene), arena_(arena), isa_(isa) {
+    Pose pose = pose_of(scene, moment_);
+    weights_ = std::move(pose.weights);
+    transforms_ = node_transforms(scene, pose.local);
+    place_nodes();
 }
 
-PreparedScene::PreparedScene(const Scene& scene) : scene_(scene), transforms_(node_transforms(scene)) {
+void PreparedScene::move_to(const Moment& moment) {
+    if (moment == moment_) return;
+    Pose pose = pose_of(scene_, moment);
+    // Of cameras only those stay that frame all of the same animation.
+    if (chosen_ && (chosen_->framed == kUnframed || chosen_->framed != moment.animation)) chosen_.reset();
+    moment_ = moment;
+    weights_ = std::move(pose.weights);
+    transforms_ = node_transforms(scene_, pose.local);
+    place_nodes();
+}
+
+// Duplicates are sought anew at every moment: what stands at one place now may part later.
+void PreparedScene::place_nodes() {
+    nodes_.clear();
+    placements_.clear();
     PlacesTaken taken;
+    std::vector<const Primitive*> skinned;
     for (const int index : transforms_.order) {
-        const Node& node = scene.nodes[static_cast<std::size_t>(index)];
+        const Node& node = scene_.nodes[static_cast<std::size_t>(index)];
+        const glm::dmat4& world = transforms_.world[static_cast<std::size_t>(index)];
         const auto first = static_cast<std::uint32_t>(placements_.size());
-        PreparedNode prepared{index, node.light, node.mesh != kNone, false, first, first};
+        PreparedNode prepared{index, node.light, node.mesh != kNone, false, first, first, world};
+        skinned.clear();
         if (prepared.has_mesh)
-            for (const Primitive& p : scene.meshes[static_cast<std::size_t>(node.mesh)].primitives) {
+            for (const Primitive& p : scene_.meshes[static_cast<std::size_t>(node.mesh)].primitives) {
                 if (!is_drawn(p.mode)) {
                     prepared.has_undrawn = true;
+                } else if (triangle_count(p) == 0) {
                     continue;
+                } else if (is_skinned(scene_, node, p)) {
+                    skinned.push_back(&p);
+                } else if (is_morphed(p)) {
+                    place(p, deform(index, p, nullptr));
+                } else if (!is_solid(scene_, p) || taken.insert(&p, world)) {
+                    place(p, prepare(p));
                 }
-                if (triangle_count(p) == 0) continue;
-                if (is_solid(scene, p) && !taken.insert(&p, world(index))) continue;
-                const int material = p.material == kNone ? static_cast<int>(scene.materials.size()) : p.material;
-                placements_.push_back({&prepare(p), static_cast<std::uint32_t>(material)});
             }
         prepared.placement_end = static_cast<std::uint32_t>(placements_.size());
         if (prepared.has_mesh || prepared.light != kNone) nodes_.push_back(prepared);
+        if (skinned.empty()) continue;
+        const JointMatrices joints =
+            joint_matrices(scene_.skins[static_cast<std::size_t>(node.skin)], transforms_.world);
+        const std::uint32_t begin = prepared.placement_end;
+        for (const Primitive* p : skinned) place(*p, deform(index, *p, &joints));
+        nodes_.push_back({index, kNone, true, false, begin, static_cast<std::uint32_t>(placements_.size()),
+                          joints.object_to_world, joints.mirrored});
     }
+}
+
+void PreparedScene::place(const Primitive& p, const PreparedMesh& mesh) {
+    const int material = p.material == kNone ? static_cast<int>(scene_.materials.size()) : p.material;
+    placements_.push_back({&mesh, static_cast<std::uint32_t>(material)});
 }
 
 const PreparedMesh& PreparedScene::prepare(const Primitive& p) {
@@ -137,10 +103,17 @@ const PreparedMesh& PreparedScene::prepare(const Primitive& p) {
     if (!mesh) {
         const Material* material =
             p.material == kNone ? nullptr : &scene_.materials[static_cast<std::size_t>(p.material)];
-        meshes_.push_back(std::make_unique<PreparedMesh>(complete(p, material), p));
+        meshes_.push_back(std::unique_ptr<PreparedMesh>(new PreparedMesh(prepare_mesh(p, material))));
         mesh = meshes_.back().get();
     }
     return *mesh;
+}
+
+const PreparedMesh& PreparedScene::deform(int node, const Primitive& p, const JointMatrices* joints) {
+    std::unique_ptr<DeformedMesh>& mesh = deformed_[{node, &p}];
+    if (!mesh) mesh = std::make_unique<DeformedMesh>(prepare(p), p);
+    mesh->update(weights_[static_cast<std::size_t>(node)], joints, isa_, arena_);
+    return mesh->mesh();
 }
 
 std::vector<bool> PreparedScene::used_materials() const {
@@ -150,25 +123,41 @@ std::vector<bool> PreparedScene::used_materials() const {
 }
 
 const PlacedCamera& PreparedScene::camera(const View& view, double aspect) {
-    if (!chosen_ || chosen_->aspect != aspect || chosen_->view != view)
-        chosen_ = {view, aspect, choose_camera(scene_, transforms_, view, aspect, [this](const PointVisitor& visit) {
-                       visit_points(visit);
-                   })};
+    if (chosen_ && chosen_->aspect == aspect && chosen_->view == view) return chosen_->camera;
+    bool framed = false;
+    const PlacedCamera camera = choose_camera(scene_, transforms_, view, aspect, [&](const PointVisitor& visit) {
+        framed = true;
+        visit_animation(visit);
+    });
+    chosen_ = {view, aspect, camera, framed ? moment_.animation : kUnframed};
     return chosen_->camera;
 }
 
-void PreparedScene::visit_points(const PointVisitor& visit) const {
-    std::map<const Primitive*, std::vector<Vec3>> used;  // of each primitive, for its many instances
-    for (const PreparedNode& n : nodes_) {
-        if (!n.has_mesh) continue;
-        const Node& node = scene_.nodes[static_cast<std::size_t>(n.node)];
-        for (const Primitive& p : scene_.meshes[static_cast<std::size_t>(node.mesh)].primitives) {
-            if (!is_drawn(p.mode)) continue;
-            std::vector<Vec3>& points = used[&p];
-            if (points.empty()) points = used_positions(p);
-            for (const Vec3& v : points) visit(transform_point(world(n.node), to_dvec3(v)));
-        }
+// At equal steps through the animation that is chosen, if any; then back.
+void PreparedScene::visit_animation(const PointVisitor& visit) {
+    visit_points(visit);
+    if (moment_.animation == kNone) return;
+    double end = 0;
+    for (std::size_t i = 0; i < scene_.animations.size(); ++i)
+        if (moment_.animation == kEveryAnimation || moment_.animation == static_cast<int>(i))
+            end = std::max(end, duration(scene_.animations[i]));
+    constexpr int kSteps = 16;
+    const Moment now = moment_;
+    for (int step = 0; step <= kSteps; ++step) {
+        move_to({now.animation, end * step / kSteps});
+        visit_points(visit);
     }
+    move_to(now);
+}
+
+void PreparedScene::visit_points(const PointVisitor& visit) const {
+    std::map<const PreparedMesh*, std::vector<Vec3>> used;  // of each mesh, for its many instances
+    for (const PreparedNode& node : nodes_)
+        for (std::uint32_t i = node.first; i < node.placement_end; ++i) {
+            std::vector<Vec3>& points = used[placements_[i].mesh];
+            if (points.empty()) points = used_positions(placements_[i].mesh->primitive());
+            for (const Vec3& v : points) visit(transform_point(node.world, to_dvec3(v)));
+        }
 }
 
 }  // namespace tessera

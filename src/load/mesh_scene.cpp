@@ -33,7 +33,8 @@ bool is_turned(const Vec3 (&p)[3], const Vec3 (&normals)[3]) {
     // Where the three disagree nothing is certain.
     int behind = 0;
     for (const Vec3& v : normals)
-        behind += n[0] * static_cast<double>(v.x) + n[1] * static_cast<double>(v.y) + n[2] * static_cast<double>(v.z) < 0;
+        behind +=
+            n[0] * static_cast<double>(v.x) + n[1] * static_cast<double>(v.y) + n[2] * static_cast<double>(v.z) < 0;
     return behind == 3;
 }
 

@@ -55,7 +55,8 @@ class MtlReader {
         if (keyword == "tr") return number([&](float v) { m.opacity = 1 - std::clamp(v, 0.0f, 1.0f); });
         if (keyword == "pr") return number([&](float v) { m.roughness = std::clamp(v, 0.0f, 1.0f); });
         if (keyword == "pm") return number([&](float v) { m.metallic = std::clamp(v, 0.0f, 1.0f); });
-        if (keyword == "illum") return number([&](float v) { m.illumination = static_cast<int>(std::clamp(v, 0.0f, 10.0f)); });
+        if (keyword == "illum")
+            return number([&](float v) { m.illumination = static_cast<int>(std::clamp(v, 0.0f, 10.0f)); });
         if (keyword == "d") {
             TextCursor ahead = text_;
             if (lower(ahead.word()) == "-halo") {
@@ -169,8 +170,7 @@ class MtlReader {
         const std::string_view word = text_.word();
         const std::optional<float> value = parse_float(word);
         constexpr float kMost = std::numeric_limits<float>::max();
-        if (!value || !(*value <= kMost && *value >= -kMost))
-            context_.fail(quoted(word) + " is no number", place());
+        if (!value || !(*value <= kMost && *value >= -kMost)) context_.fail(quoted(word) + " is no number", place());
         return *value;
     }
 

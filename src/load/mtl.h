@@ -17,19 +17,19 @@ struct MtlTexture {
     std::string file;  // as written, with forward slashes; empty: none
     Vec2 offset{0, 0}, scale{1, 1};
     bool clamp = false;
-    float bump = 1;        // -bm
-    char channel = 0;      // -imfchan: r g b m l z; 0: not said
+    float bump = 1;            // -bm
+    char channel = 0;          // -imfchan: r g b m l z; 0: not said
     float base = 0, gain = 1;  // -mm
 };
 
 struct MtlMaterial {
     std::string name;
-    std::optional<Vec3> ambient;                               // Ka
+    std::optional<Vec3> ambient;                                           // Ka
     Vec3 diffuse{0.8f, 0.8f, 0.8f}, specular{0, 0, 0}, emission{0, 0, 0};  // Kd, Ks, Ke
-    float shininess = 32, opacity = 1, ior = 1.5f;             // Ns, d, Ni
-    Vec3 filter{1, 1, 1};                                      // Tf
-    std::optional<float> roughness, metallic;                  // Pr, Pm
-    int illumination = 2;                                      // illum
+    float shininess = 32, opacity = 1, ior = 1.5f;                         // Ns, d, Ni
+    Vec3 filter{1, 1, 1};                                                  // Tf
+    std::optional<float> roughness, metallic;                              // Pr, Pm
+    int illumination = 2;                                                  // illum
     MtlTexture map_ambient, map_diffuse, map_specular, map_emission, map_shininess, map_opacity, map_bump, map_normal,
         map_roughness, map_metallic, map_other;
 };

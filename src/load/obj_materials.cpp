@@ -120,8 +120,7 @@ void ObjMaterials::set_opacity(const MtlMaterial& m, int number) {
     const char channel = m.map_opacity.channel != 0 ? m.map_opacity.channel : '?';
     const int color = picture(m.map_diffuse);
     const int both = combined(color, opacity, channel, 3);
-    material.texture(TextureSlot::kBaseColor) =
-        texture_of(both, color == kNone ? m.map_opacity : m.map_diffuse);
+    material.texture(TextureSlot::kBaseColor) = texture_of(both, color == kNone ? m.map_opacity : m.map_diffuse);
     masked_.push_back(number);
 }
 

@@ -17,10 +17,11 @@ namespace {
 
 // Statements that are read, and those that say nothing about polygons.
 constexpr std::string_view kKnown[] = {"v", "vt", "vn", "f", "fo", "l", "p", "o", "g", "s", "usemtl", "mtllib"};
-constexpr std::string_view kIgnored[] = {"mg", "lod", "bevel", "c_interp", "d_interp", "shadow_obj", "trace_obj",
-                                         "usemap", "maplib", "ctech", "stech", "deg", "bmat", "step", "vp"};
+constexpr std::string_view kIgnored[] = {"mg",         "lod",       "bevel",  "c_interp", "d_interp",
+                                         "shadow_obj", "trace_obj", "usemap", "maplib",   "ctech",
+                                         "stech",      "deg",       "bmat",   "step",     "vp"};
 constexpr std::string_view kFreeForm[] = {"cstype", "curv", "curv2", "surf", "parm", "trim",
-                                          "hole", "scrv", "sp", "end", "con"};
+                                          "hole",   "scrv", "sp",    "end",  "con"};
 
 template <std::size_t kCount>
 bool is_one_of(const std::string_view (&words)[kCount], std::string_view word) {
@@ -60,8 +61,7 @@ class ObjReader {
         if (is_one_of(kIgnored, keyword)) return;
         // Words of other programs are passed over; what is no word at all is no OBJ.
         for (const char c : keyword.substr(0, 60))
-            if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f)
-                context_.fail("no statement of OBJ", text_.place());
+            if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) context_.fail("no statement of OBJ", text_.place());
         if (++unknown_ > 64 && out_.positions.empty()) context_.fail("no OBJ file: 64 lines that are none of it");
         warn_once("the statement " + quoted(keyword) + " is not known");
     }
@@ -197,7 +197,8 @@ class ObjReader {
             return;
         }
         const std::optional<long long> group = parse_integer(word);
-        if (!group || *group < 0 || *group >= kUnsaid) context_.fail(quoted(word) + " is no smoothing group", text_.place());
+        if (!group || *group < 0 || *group >= kUnsaid)
+            context_.fail(quoted(word) + " is no smoothing group", text_.place());
         smoothing_ = static_cast<std::uint32_t>(*group);
     }
     // By definition smoothing is off until a file says otherwise; some files never do.

@@ -34,9 +34,7 @@ struct ObjPart {
     std::int32_t material;  // index into ObjText::materials, or -1
     PrimitiveMode mode;     // kTriangles, kLines or kPoints
     std::uint32_t elements = 0;
-    bool operator==(const ObjPart& o) const {
-        return object == o.object && material == o.material && mode == o.mode;
-    }
+    bool operator==(const ObjPart& o) const { return object == o.object && material == o.material && mode == o.mode; }
 };
 
 struct ObjText {

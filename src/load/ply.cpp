@@ -189,7 +189,8 @@ class PlyReader {
         if (mesh_.positions.empty()) context_.fail("the vertices have no x, y and z");
         add_columns(e, columns, mesh_.normals, {e.find("nx"), e.find("ny"), e.find("nz")});
         const int red = find_one(e, {"red", "diffuse_red", "r"}), green = find_one(e, {"green", "diffuse_green", "g"}),
-                  blue = find_one(e, {"blue", "diffuse_blue", "b"}), alpha = find_one(e, {"alpha", "diffuse_alpha", "a"});
+                  blue = find_one(e, {"blue", "diffuse_blue", "b"}),
+                  alpha = find_one(e, {"alpha", "diffuse_alpha", "a"});
         const bool has_color = red >= 0 && green >= 0 && blue >= 0;
         if (has_color && alpha >= 0) {
             add_columns(e, columns, mesh_.colors, {red, green, blue, alpha}, true);
@@ -197,8 +198,9 @@ class PlyReader {
             add_columns(e, columns, mesh_.colors, {red, green, blue}, true);
             for (Vec4& color : mesh_.colors) color.w = 1;
         }
-        add_columns(e, columns, mesh_.texcoords,
-                    {find_one(e, {"u", "s", "texture_u", "texture_s"}), find_one(e, {"v", "t", "texture_v", "texture_t"})});
+        add_columns(
+            e, columns, mesh_.texcoords,
+            {find_one(e, {"u", "s", "texture_u", "texture_s"}), find_one(e, {"v", "t", "texture_v", "texture_t"})});
         for (std::uint64_t i = 0; i < e.count; ++i)
             for (std::size_t p = 0; p < columns.size(); ++p) {
                 const Column& column = columns[p];
@@ -268,7 +270,8 @@ PlyMesh read_data(LoadContext& context, const PlyHeader& header, std::string_vie
     return reader.read(BinaryNumbers<true>(context, data, header.size));
 }
 
-std::uint32_t checked_vertex(const LoadContext& context, std::int64_t number, const PlyMesh& mesh, const std::string& of) {
+std::uint32_t checked_vertex(const LoadContext& context, std::int64_t number, const PlyMesh& mesh,
+                             const std::string& of) {
     if (number < 0 || static_cast<std::uint64_t>(number) >= mesh.positions.size())
         context.fail("vertex " + std::to_string(number) + " of " + std::to_string(mesh.positions.size()), of);
     return static_cast<std::uint32_t>(number);

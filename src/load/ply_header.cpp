@@ -15,23 +15,22 @@ constexpr std::size_t kMaxElements = 256, kMaxProperties = 1024;
 
 std::optional<PlyType> type_named(std::string_view name) {
     using enum PlyType;
-    static constexpr std::array<std::pair<std::string_view, PlyType>, 16> kNames{
-        {{"char", kInt8},
-         {"int8", kInt8},
-         {"uchar", kUint8},
-         {"uint8", kUint8},
-         {"short", kInt16},
-         {"int16", kInt16},
-         {"ushort", kUint16},
-         {"uint16", kUint16},
-         {"int", kInt32},
-         {"int32", kInt32},
-         {"uint", kUint32},
-         {"uint32", kUint32},
-         {"float", kFloat32},
-         {"float32", kFloat32},
-         {"double", kFloat64},
-         {"float64", kFloat64}}};
+    static constexpr std::array<std::pair<std::string_view, PlyType>, 16> kNames{{{"char", kInt8},
+                                                                                  {"int8", kInt8},
+                                                                                  {"uchar", kUint8},
+                                                                                  {"uint8", kUint8},
+                                                                                  {"short", kInt16},
+                                                                                  {"int16", kInt16},
+                                                                                  {"ushort", kUint16},
+                                                                                  {"uint16", kUint16},
+                                                                                  {"int", kInt32},
+                                                                                  {"int32", kInt32},
+                                                                                  {"uint", kUint32},
+                                                                                  {"uint32", kUint32},
+                                                                                  {"float", kFloat32},
+                                                                                  {"float32", kFloat32},
+                                                                                  {"double", kFloat64},
+                                                                                  {"float64", kFloat64}}};
     for (const auto& [known, type] : kNames)
         if (known == name) return type;
     return std::nullopt;

@@ -19,7 +19,7 @@ inline bool is_integer(PlyType type) { return type < PlyType::kFloat32; }
 
 struct PlyProperty {
     std::string name;
-    PlyType type;                          // of a list: of its items
+    PlyType type;  // of a list: of its items
     bool is_list = false;
     PlyType length_type = PlyType::kUint8;  // of a list
 };

@@ -46,7 +46,9 @@ void read_binary(LoadContext& context, std::span<const std::byte> file, Scene& s
 class AsciiReader {
   public:
     AsciiReader(LoadContext& context, std::span<const std::byte> file, Scene& scene)
-        : context_(context), text_(std::string_view(reinterpret_cast<const char*>(file.data()), file.size())), scene_(scene) {}
+        : context_(context),
+          text_(std::string_view(reinterpret_cast<const char*>(file.data()), file.size())),
+          scene_(scene) {}
 
     void read() {
         while (text_.next_line())
@@ -73,8 +75,7 @@ class AsciiReader {
         } else if (word == "vertex") {
             add_vertex();
         } else if (word == "endloop") {
-            if (corners_ != 3)
-                context_.fail("a triangle of " + std::to_string(corners_) + " vertices", text_.place());
+            if (corners_ != 3) context_.fail("a triangle of " + std::to_string(corners_) + " vertices", text_.place());
             corners_ = 0;
             count_triangles(context_, ++triangles_, text_.place());
         } else if (word != "outer" && word != "loop" && word != "endfacet") {

@@ -11,7 +11,8 @@ bool TextCursor::next_line() {
         line_ = 1;
         return !text_.empty();
     }
-    while (!word().empty()) {}
+    while (!word().empty()) {
+    }
     at_ = offset_after_line();
     ++line_;
     return at_ < text_.size();

@@ -17,14 +17,18 @@ namespace tessera {
 // Everything that outlives a frame.
 struct Renderer::Impl {
     Impl(const Scene& s, const RenderOptions& o)
-        : scene(s), options(o), arena(o.threads), prepared(s), shading(s, prepared.used_materials(), arena, warnings) {
+        : scene(s),
+          options(o),
+          arena(o.threads),
+          prepared(s, &arena, o.engine == Engine::kRaster ? resolve_isa(o.isa) : Isa::kScalar),
+          shading(s, prepared.used_materials(), arena, warnings) {
         const bool wide = o.filter != PixelFilter::kBox && (o.want_color || o.want_linear);
         if (o.engine != Engine::kRaster || !wide) return;
         filter.emplace(o, &arena);
         sample_plane.resize(filter->plane_floats());
     }
 
-    void draw(const View& view, RenderResult& result);
+    void draw(const View& view, const Moment& moment, RenderResult& result);
     void draw_tiles(const Watchdog& watchdog, Stopwatch& watch, RenderResult& result);
     void draw_reference(const Watchdog& watchdog, Stopwatch& watch, RenderResult& result);
 
@@ -48,12 +52,13 @@ Renderer::Renderer(const Scene& scene, const RenderOptions& options) {
     impl_ = std::make_unique<Impl>(scene, options);
 }
 
-void Renderer::Impl::draw(const View& view, RenderResult& result) {
+void Renderer::Impl::draw(const View& view, const Moment& moment, RenderResult& result) {
     const FpEnvironment exact;
     result.stats = {};
     Stopwatch watch(result.stats);
     const Watchdog watchdog(options);
 
+    prepared.move_to(moment);
     make_frame(prepared, view, options.width, options.height, frame);
     shading.light(scene, frame, options);
     watch.phase("evaluate");
@@ -141,8 +146,9 @@ Renderer::~Renderer() = default;
 Renderer::Renderer(Renderer&&) noexcept = default;
 Renderer& Renderer::operator=(Renderer&&) noexcept = default;
 
-void Renderer::draw(RenderResult& result) { impl_->draw(impl_->options.view, result); }
-void Renderer::draw(const View& view, RenderResult& result) { impl_->draw(view, result); }
+void Renderer::draw(RenderResult& result) { draw(impl_->options.view, result); }
+void Renderer::draw(const View& view, RenderResult& result) { draw(view, impl_->options.moment, result); }
+void Renderer::draw(const View& view, const Moment& moment, RenderResult& result) { impl_->draw(view, moment, result); }
 const RenderOptions& Renderer::options() const { return impl_->options; }
 
 RenderResult render(const Scene& scene, const RenderOptions& options) {

@@ -28,6 +28,10 @@ std::string color_hash(const std::string& statistics) {
 class CliRender : public CliTest {
   protected:
     Strings small(const std::string& name) const { return {"render", scene(name), "-s", "64x48", "--samples", "1"}; }
+    std::string contents(const std::string& name) const {
+        std::ifstream file(in_folder(name), std::ios::binary);
+        return {std::istreambuf_iterator<char>(file), {}};
+    }
     Outcome render(const Strings& more) const { return run_command(small("cornell-box.gltf") + more); }
 };
 
@@ -200,6 +204,37 @@ TEST_F(CliRender, FB1_ColorBitsLimitTheLevels) {
     EXPECT_GT(levels(0), 2);
 }
 
+// Numbered pictures are those of --time, and what is there already can stay.
+TEST_F(CliRender, ANI11_FramesAreNumbered) {
+    const std::string motion = std::string(TESSERA_SOURCE_DIR) + "/scenes/motion.gltf";
+    const auto run = [&](Strings arguments) {
+        arguments.insert(arguments.begin(), {"render", motion, "-s", "64x48", "--samples", "1"});
+        return run_command(arguments);
+    };
+    const Outcome all =
+        run({"-o", in_folder("f_{frame:03}.png"), "--frames", "2-4", "--fps", "4", "--stats", in_folder("stats.json")});
+    EXPECT_EQ(all.code, 0) << all.err;
+    EXPECT_EQ(folder_contents(), (Strings{"f_002.png", "f_003.png", "f_004.png", "stats.json"}));
+    EXPECT_EQ(run({"-o", in_folder("single.png"), "--time", "0.75", "--animation", "everything"}).code, 0);
+    EXPECT_EQ(contents("f_003.png"), contents("single.png"));
+    EXPECT_NE(contents("f_002.png"), contents("f_003.png"));
+    const std::string statistics = contents("stats.json");
+    EXPECT_EQ(statistics.front(), '[');
+    std::size_t objects = 0;
+    for (std::size_t at = 0; (at = statistics.find("\"color_hash\"", at)) != std::string::npos; ++at) ++objects;
+    EXPECT_EQ(objects, 3u);
+
+    std::ofstream(in_folder("f_003.png")) << "kept";
+    std::filesystem::remove(in_folder("f_004.png"));
+    EXPECT_EQ(run({"-o", in_folder("f_{frame:03}.png"), "--frames", "3-4", "--fps", "4", "--skip-existing"}).code, 0);
+    EXPECT_EQ(contents("f_003.png"), "kept");
+    EXPECT_TRUE(std::filesystem::exists(in_folder("f_004.png")));
+
+    const Outcome wrong = run({"-o", in_folder("x.png"), "--animation", "nothing"});
+    EXPECT_EQ(wrong.code, 2);
+    EXPECT_NE(wrong.err.find("there are: 0 'everything'"), std::string::npos) << wrong.err;
+}
+
 TEST_F(CliRender, UsageErrorsExitWith2AndNameTheOption) {
     const std::string out = in_folder("a.png");
     const std::vector<std::pair<Strings, std::string>> cases{
@@ -222,7 +257,19 @@ TEST_F(CliRender, UsageErrorsExitWith2AndNameTheOption) {
         {{"-o", out, "--target", "1,2,3"}, "--target"},
         {{"-o", out, "--camera", "0", "--eye", "1,2,3"}, "--camera"},
         {{"-o", out, "--fov", "200"}, "--fov"},
-        {{"-o", out, "--time", "1.5"}, "--time"},
+        {{"-o", out, "--time", "1.5"}, "--time: the scene has no animations"},
+        {{"-o", out, "--time", "soon"}, "--time"},
+        {{"-o", out, "--animation", "all"}, "--animation: the scene has no animations"},
+        {{"-o", out, "--frames", "0-9"}, "--output: with --frames"},
+        {{"-o", in_folder("{frame}.png")}, "--output: {frame} needs --frames"},
+        {{"-o", in_folder("{frame}_{take}.png"), "--frames", "0-9"}, "{take} is no place"},
+        {{"-o", in_folder("{frame:x}.png"), "--frames", "0-9"}, "is no width"},
+        {{"-o", in_folder("{frame}}.png"), "--frames", "0-9"}, "--output: a }"},
+        {{"-o", in_folder("{frame}.png"), "--frames", "9-0"}, "--frames: ends before"},
+        {{"-o", in_folder("{frame}.png"), "--frames", "a-b"}, "--frames"},
+        {{"-o", in_folder("{frame}.png"), "--frames", "0-1", "--fps", "0"}, "--fps"},
+        {{"-o", in_folder("{frame}.png"), "--frames", "0-1", "--time", "1"}, "--time: excludes"},
+        {{"-o", out, "--skip-existing"}, "--skip-existing: needs --frames"},
         {{"-o", out, "--background", "#12345"}, "--background"},
         {{"-o", out, "--exposure", "nan"}, "--exposure"},
         {{"-o", out, "--tone-map", "film"}, "--tone-map"},

@@ -11,6 +11,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <csignal>
@@ -120,6 +121,7 @@ class CliTest : public ::testing::Test {
         std::vector<std::string> names;
         for (const auto& entry : std::filesystem::directory_iterator(folder_))
             names.push_back(entry.path().filename().string());
+        std::sort(names.begin(), names.end());
         return names;
     }
     static std::string scene(const std::string& name) { return std::string(TESSERA_SOURCE_DIR "/scenes/") + name; }

@@ -20,7 +20,8 @@ std::vector<MtlMaterial> parse(const std::string& text) {
 
 TEST(Mtl, EveryFactor) {
     const auto m = parse(
-        "newmtl first one\nKa 0.1 0.2 0.3\nKd 0.4\nKs 0.5 0.6 0.7\nKe 1 2 3\nNs 96.5\nNi 1.45\nd 0.25\nTf 1 0.5 0\nillum 7\n"
+        "newmtl first one\nKa 0.1 0.2 0.3\nKd 0.4\nKs 0.5 0.6 0.7\nKe 1 2 3\nNs 96.5\nNi 1.45\nd 0.25\nTf 1 0.5 "
+        "0\nillum 7\n"
         "newmtl second\n\tkd xyz 0.9505 1 1.089\n\tTr 0.25\n\tPr 0.3\n\tPm 1\nd -halo 0.5\nillum 1");
     ASSERT_EQ(m.size(), 2u);
     EXPECT_EQ(m[0].name, "first one");
@@ -63,7 +64,8 @@ TEST(Mtl, NumbersThatAreNoneAreNamed) {
         parse("newmtl a\nKd red\n");
         FAIL();
     } catch (const Error& error) {
-        EXPECT_NE(std::string(error.what()).find("x.mtl, line 2: \"red\" is no number"), std::string::npos) << error.what();
+        EXPECT_NE(std::string(error.what()).find("x.mtl, line 2: \"red\" is no number"), std::string::npos)
+            << error.what();
     }
 }
 
@@ -75,8 +77,8 @@ class MtlFiles : public testing::Test {
     void write(const std::string& name, const Image& image) { write_image((folder.path() / name).string(), image); }
     Scene load(const std::string& statements) {
         write("m.mtl", statements);
-        return load_text("mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nusemtl m\nf 1/1 2/2 3/3\n", "x.obj",
-                         {}, folder.path().string());
+        return load_text("mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nusemtl m\nf 1/1 2/2 3/3\n",
+                         "x.obj", {}, folder.path().string());
     }
     static const Material& material(const Scene& scene) {
         return scene.materials.at(static_cast<std::size_t>(scene.meshes.at(0).primitives.at(0).material));
@@ -152,9 +154,9 @@ TEST_F(MtlFiles, RoughnessAndMetalShareATexture) {
 }
 
 TEST_F(MtlFiles, WhatIsMissingIsAWarning) {
-    const Scene scene = load_text(
-        "mtllib none.mtl\nmtllib ../../../etc/passwd\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl what\nf 1 2 3\n", "x.obj", {},
-        folder.path().string());
+    const Scene scene =
+        load_text("mtllib none.mtl\nmtllib ../../../etc/passwd\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl what\nf 1 2 3\n",
+                  "x.obj", {}, folder.path().string());
     ASSERT_EQ(scene.warnings.size(), 3u);
     EXPECT_NE(scene.warnings[0].find("none.mtl"), std::string::npos);
     EXPECT_NE(scene.warnings[1].find("leaves the scene's folder"), std::string::npos);

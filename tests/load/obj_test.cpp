@@ -29,7 +29,8 @@ TEST(Obj, PositionsTextureCoordinatesAndNormals) {
 }
 
 TEST(Obj, NegativeReferencesCountBackFromTheirLine) {
-    const Scene scene = load_text("v 9 9 9\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf -3 -2 -1\nv 5 5 5\nf -4// 3// -1//\n", "a.obj");
+    const Scene scene =
+        load_text("v 9 9 9\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf -3 -2 -1\nv 5 5 5\nf -4// 3// -1//\n", "a.obj");
     const Primitive& p = only_primitive(scene);
     ASSERT_EQ(p.indices.size(), 6u);
     const auto at = [&](std::size_t i) { return p.positions[p.indices[i]]; };
@@ -42,7 +43,8 @@ TEST(Obj, NegativeReferencesCountBackFromTheirLine) {
 // Vertices are shared where all of position, texture coordinate and normal are the same, and only there.
 TEST(Obj, VerticesAreShared) {
     const Scene scene = load_text(
-        "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvn 0 0 1\nvn 0 1 0\nf 1//1 2//1 3//1\nf 1//1 3//1 4//2\nf 1//2 3//1 4//2\n",
+        "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvn 0 0 1\nvn 0 1 0\nf 1//1 2//1 3//1\nf 1//1 3//1 4//2\nf 1//2 3//1 "
+        "4//2\n",
         "a.obj");
     const Primitive& p = only_primitive(scene);
     EXPECT_EQ(p.positions.size(), 5u);
@@ -127,7 +129,8 @@ TEST(Obj, LIT5_SmoothingGroupsDecideMissingNormals) {
     const Scene later = load_text("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 0 1\nf 1 2 3\nf 1 4 2\ns 1\n", "a.obj");
     EXPECT_EQ(only_primitive(later).positions.size(), 6u);
     // A gentle fold stays smooth without a word.
-    const Scene gentle = load_text("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 -1 0.5\nv 1 -1 0.5\nf 1 2 3 4\nf 1 5 6 2\n", "a.obj");
+    const Scene gentle =
+        load_text("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 -1 0.5\nv 1 -1 0.5\nf 1 2 3 4\nf 1 5 6 2\n", "a.obj");
     EXPECT_EQ(only_primitive(gentle).positions.size(), 6u);
 }
 
@@ -146,7 +149,8 @@ TEST(Obj, LIT5_NormalsAreWeightedByAngle) {
 
 TEST(Obj, ContinuedLinesAndForeignStatements) {
     const Scene scene = load_text(
-        "v 0 0 \\\n 0\r\nv 1 0 0\r\nv 0 1 0\r\nmg 0\nlod 3\ncstype bezier\ncurv 0 1\nend\nwhatever 1 2\nf 1 \\\n2 3", "a.obj");
+        "v 0 0 \\\n 0\r\nv 1 0 0\r\nv 0 1 0\r\nmg 0\nlod 3\ncstype bezier\ncurv 0 1\nend\nwhatever 1 2\nf 1 \\\n2 3",
+        "a.obj");
     EXPECT_EQ(only_primitive(scene).indices.size(), 3u);
     ASSERT_EQ(scene.warnings.size(), 2u);
     EXPECT_NE(scene.warnings[0].find("free-form"), std::string::npos);

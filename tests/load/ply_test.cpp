@@ -110,7 +110,8 @@ TEST(Ply, LIT5_ACubeHasSixFlatFaces) {
     ASSERT_EQ(p.indices.size(), 36u);
     ASSERT_EQ(p.positions.size(), 24u);
     for (std::size_t i = 0; i < p.indices.size(); i += 3) {
-        const Vec3 &a = p.positions[p.indices[i]], &b = p.positions[p.indices[i + 1]], &c = p.positions[p.indices[i + 2]];
+        const Vec3 &a = p.positions[p.indices[i]], &b = p.positions[p.indices[i + 1]],
+                   &c = p.positions[p.indices[i + 2]];
         const Vec3 e{b.x - a.x, b.y - a.y, b.z - a.z}, f{c.x - a.x, c.y - a.y, c.z - a.z};
         const Vec3 n{e.y * f.z - e.z * f.y, e.z * f.x - e.x * f.z, e.x * f.y - e.y * f.x};
         for (std::size_t k = 0; k < 3; ++k) EXPECT_EQ(p.normals[p.indices[i + k]], n);
@@ -129,9 +130,9 @@ TEST(Ply, PointsEdgesAndStrips) {
         "e.ply");
     EXPECT_EQ(only_primitive(edges).mode, PrimitiveMode::kLines);
     EXPECT_EQ(only_primitive(edges).indices, (std::vector<std::uint32_t>{0, 1, 2, 3}));
-    const Scene strip = load_text(
-        vertices + "element tristrips 1\nproperty list int int vertex_indices\nend_header\n" + numbers + "8 0 1 2 3 -1 3 2 1\n",
-        "s.ply");
+    const Scene strip = load_text(vertices + "element tristrips 1\nproperty list int int vertex_indices\nend_header\n" +
+                                      numbers + "8 0 1 2 3 -1 3 2 1\n",
+                                  "s.ply");
     const Primitive& p = only_primitive(strip);
     ASSERT_EQ(p.indices.size(), 9u);
     for (const Vec3& n : p.normals) EXPECT_EQ(std::abs(n.z), 1.0f);
@@ -142,7 +143,8 @@ TEST(Ply, PointsEdgesAndStrips) {
 // Writers that care for normals only: the front is where they point.
 TEST(Ply, TrianglesTurnToTheirNormals) {
     const Scene scene = load_text(
-        "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nproperty float nx\n"
+        "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nproperty float "
+        "nx\n"
         "property float ny\nproperty float nz\nelement face 1\nproperty list uchar int vertex_index\nend_header\n"
         "0 0 0 0 0 -1\n1 0 0 0 0 -1\n0 1 0 0 0 -1\n3 0 1 2\n",
         "t.ply");
@@ -165,7 +167,8 @@ TEST(Ply, DamageIsNamed) {
     expect(start + "element vertex 2\n" + xyz + "end_header\n1.0 2.0 3.0 4.0 5.0\n", "ends before");
     expect(start + "element vertex 1\n" + xyz + "end_header\n1 2 z\n", "line 8");
     expect(start + "element vertex 1\n" + xyz + "end_header\n1 2 inf\n", "meshes/0");
-    const std::string face = "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n";
+    const std::string face =
+        "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n";
     expect(start + "element vertex 3\n" + xyz + face + "3 0 1 3\n", "vertex 3 of 3");
     expect(start + "element vertex 3\n" + xyz + face + "3 0 1 -1\n", "vertex -1 of 3");
     expect(start + "element vertex 3\n" + xyz + face + "-3 0 1 2\n", "length of a list");

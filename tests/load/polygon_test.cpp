@@ -52,10 +52,10 @@ TEST(Polygon, ConvexOnesBecomeAFan) {
 }
 
 TEST(Polygon, ConcaveOnesKeepTheirArea) {
-    expect_partition({{0, 0, 0}, {4, 0, 0}, {1, 1, 0}, {0, 4, 0}});                          // a dart
-    expect_partition({{0, 0, 0}, {0, 4, 0}, {1, 1, 0}, {4, 0, 0}});                          // the other way round
+    expect_partition({{0, 0, 0}, {4, 0, 0}, {1, 1, 0}, {0, 4, 0}});  // a dart
+    expect_partition({{0, 0, 0}, {0, 4, 0}, {1, 1, 0}, {4, 0, 0}});  // the other way round
     expect_partition({{0, 0, 0}, {6, 0, 0}, {6, 2, 0}, {4, 2, 0}, {4, 1, 0}, {2, 1, 0}, {2, 2, 0}, {0, 2, 0}});
-    expect_partition({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {2, 2, 0}, {1, 2, 0}, {0, 2, 0}});    // corners on edges
+    expect_partition({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {2, 2, 0}, {1, 2, 0}, {0, 2, 0}});  // corners on edges
     std::vector<Vec3> spiral;
     for (int i = 0; i < 40; ++i)
         spiral.push_back({(1.0f + 0.1f * static_cast<float>(i)) * std::cos(0.4f * static_cast<float>(i)),

@@ -27,7 +27,8 @@ const std::vector<Vec3> kTwo{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 
 constexpr const char* kAscii =
     "solid first part\n facet normal 0 0 1\n  outer loop\n   vertex 0 0 0\n   vertex 1 0 0\n   vertex 0 1e0 0\n"
     "  endloop\n endfacet\nendsolid first part\n"
-    "solid second\nfacet normal 0 0 1\nouter loop\nvertex 0 0 1 vertex 1 0 1 vertex 0 1 1.5\nendloop\nendfacet\nendsolid\n";
+    "solid second\nfacet normal 0 0 1\nouter loop\nvertex 0 0 1 vertex 1 0 1 vertex 0 1 "
+    "1.5\nendloop\nendfacet\nendsolid\n";
 
 TEST(Stl, BinaryGivesItsTriangles) {
     for (const char* header : {"made by a test", "solid in name only"}) {
@@ -60,8 +61,10 @@ TEST(Stl, DamageIsNamed) {
     std::string cut = binary_stl(kTwo);
     cut.resize(cut.size() - 1);
     EXPECT_NE(load_error(cut, "a.stl").find("2 triangles do not fit"), std::string::npos);
-    EXPECT_NE(load_error("solid x\nfacet normal 0 0 1\nouter loop\nvertex 0 0\n", "a.stl").find("line 4"), std::string::npos);
-    EXPECT_NE(load_error("solid x\nouter loop\nvertex 0 0 0\nendloop", "a.stl").find("a triangle of 1"), std::string::npos);
+    EXPECT_NE(load_error("solid x\nfacet normal 0 0 1\nouter loop\nvertex 0 0\n", "a.stl").find("line 4"),
+              std::string::npos);
+    EXPECT_NE(load_error("solid x\nouter loop\nvertex 0 0 0\nendloop", "a.stl").find("a triangle of 1"),
+              std::string::npos);
     EXPECT_NE(load_error("solid x\nvertex 0 0 0 vertex 1 1 1\nendsolid", "a.stl").find("within a triangle"),
               std::string::npos);
     EXPECT_NE(load_error("solid x\nbanana", "a.stl").find("banana"), std::string::npos);

@@ -65,7 +65,8 @@ TEST(TextNumbers, AreRoundedCorrectly) {
     EXPECT_TRUE(std::isinf(*parse_float("1" + std::string(1000, '0'))));
     EXPECT_EQ(parse_float("0." + std::string(1000, '0') + "1"), 0.0f);
     EXPECT_TRUE(std::isnan(*parse_float("nan")));
-    for (const char* word : {"", "-", "+", "1.5x", "x", "1 2", "--1", "+-1", "0x10"}) EXPECT_FALSE(parse_float(word)) << word;
+    for (const char* word : {"", "-", "+", "1.5x", "x", "1 2", "--1", "+-1", "0x10"})
+        EXPECT_FALSE(parse_float(word)) << word;
     EXPECT_EQ(parse_integer("-12"), -12);
     EXPECT_FALSE(parse_integer("99999999999999999999"));
     EXPECT_FALSE(parse_integer("1.0"));

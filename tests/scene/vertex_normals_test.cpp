@@ -16,7 +16,8 @@ TEST(VertexNormals, LIT5_OfASphereAreItsRadii) {
     for (int r = 0; r <= kRings; ++r)
         for (int s = 0; s < kSegments; ++s) {
             const double theta = 3.14159265358979 * r / kRings, phi = 2 * 3.14159265358979 * s / kSegments;
-            positions.push_back({static_cast<float>(std::sin(theta) * std::cos(phi)), static_cast<float>(std::cos(theta)),
+            positions.push_back({static_cast<float>(std::sin(theta) * std::cos(phi)),
+                                 static_cast<float>(std::cos(theta)),
                                  static_cast<float>(-std::sin(theta) * std::sin(phi))});
         }
     std::vector<std::uint32_t> corners;
@@ -55,7 +56,8 @@ TEST(VertexNormals, NothingToGoByGivesSomethingThatShades) {
 TEST(VertexNormals, CreasesPartWhatFoldsByMoreThanSixtyDegrees) {
     for (const int degrees : {20, 55, 65, 90}) {
         const double a = degrees * 3.14159265358979 / 180;
-        const std::vector<Vec3> positions{{0, 0, 0}, {0, 0, 1}, {-1, 0, 0}, {static_cast<float>(std::cos(a)), static_cast<float>(-std::sin(a)), 0}};
+        const std::vector<Vec3> positions{
+            {0, 0, 0}, {0, 0, 1}, {-1, 0, 0}, {static_cast<float>(std::cos(a)), static_cast<float>(-std::sin(a)), 0}};
         const std::vector<std::uint32_t> corners{0, 2, 1, 0, 1, 3};
         std::size_t count = 0;
         const std::vector<std::uint32_t> groups = crease_groups(positions, corners, count);

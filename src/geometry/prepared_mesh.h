@@ -1,0 +1,31 @@
+// A primitive ready for drawing: triangles, normals, tangents, bounds.
+#pragma once
+
+#include "geometry/draw_data.h"
+#include "geometry/triangles.h"
+
+#include <cstdint>
+
+namespace tessera {
+
+// One primitive of a mesh, prepared once for all of its instances.
+struct PreparedMesh {
+    PreparedMesh(Primitive&& made, const Primitive& source);
+    PreparedMesh(const PreparedMesh&) = delete;
+    PreparedMesh& operator=(const PreparedMesh&) = delete;
+
+    const Primitive& primitive() const { return made.positions.empty() ? *source : made; }
+    void measure();  // the bounds of the positions, after they were written over
+
+    Primitive made;           // with normals and tangents, where the source lacked them; else empty
+    const Primitive* source;  // the scene's
+    TriangleList triangles;   // of primitive()
+    Bounds3 bounds;           // object space
+    MeshView view{};
+    std::uint32_t lowest_vertex = 0, highest_vertex = 0;  // that a triangle names
+};
+
+// With the normals and tangents that drawing with this material (null: none) needs and the file lacks.
+PreparedMesh prepare_mesh(const Primitive& primitive, const Material* material);
+
+}  // namespace tessera
