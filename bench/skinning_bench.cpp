@@ -21,8 +21,13 @@ struct Figure {
     std::vector<std::uint32_t> joints;
 
     Figure()
-        : matrices(12 * kJoints), weights(4 * kVertices), positions(3 * kVertices), normals(3 * kVertices),
-          out_positions(3 * kVertices), out_normals(3 * kVertices), joints(4 * kVertices) {
+        : matrices(12 * kJoints),
+          weights(4 * kVertices),
+          positions(3 * kVertices),
+          normals(3 * kVertices),
+          out_positions(3 * kVertices),
+          out_normals(3 * kVertices),
+          joints(4 * kVertices) {
         std::mt19937 random(1);
         const auto number = [&] { return static_cast<float>(random() >> 8) / 16777216.0f; };
         for (std::vector<float>* values : {&matrices, &positions, &normals})

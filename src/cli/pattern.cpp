@@ -9,8 +9,8 @@ namespace {
 
 // "04" or "4": zeros in front, at least so many digits.
 std::string padded(const std::string& option, long number, const std::string& width) {
-    if (!width.empty() && (width.size() > 3 || !std::all_of(width.begin(), width.end(),
-                                                            [](char c) { return c >= '0' && c <= '9'; })))
+    if (!width.empty() &&
+        (width.size() > 3 || !std::all_of(width.begin(), width.end(), [](char c) { return c >= '0' && c <= '9'; })))
         refuse(option, "'" + width + "' is no width of a number");
     std::string digits = std::to_string(number < 0 ? -number : number);
     const std::size_t wanted = width.empty() ? 0 : static_cast<std::size_t>(std::stoi(width));

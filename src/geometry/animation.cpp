@@ -131,7 +131,9 @@ void sample_animation(const AnimationSampler& sampler, double time, bool rotatio
     const std::size_t n = out.size();
     const bool cubic = sampler.interpolation == Interpolation::kCubicSpline;
     // Of cubic splines a key holds the tangent that comes in, the value, and the tangent that goes out.
-    const auto key = [&](std::size_t k, std::size_t part) { return sampler.values.data() + (cubic ? 3 * k + part : k) * n; };
+    const auto key = [&](std::size_t k, std::size_t part) {
+        return sampler.values.data() + (cubic ? 3 * k + part : k) * n;
+    };
     const auto hold = [&](std::size_t k) {
         for (std::size_t i = 0; i < n; ++i) out[i] = static_cast<double>(key(k, 1)[i]);
         if (rotation) normalize(out);

@@ -45,7 +45,8 @@ bool same_bits(std::span<const float> a, std::span<const float> b) {
 }  // namespace
 
 bool is_skinned(const Scene& scene, const Node& node, const Primitive& primitive) {
-    return node.skin != kNone && has_joints(primitive) && !scene.skins[static_cast<std::size_t>(node.skin)].joints.empty();
+    return node.skin != kNone && has_joints(primitive) &&
+           !scene.skins[static_cast<std::size_t>(node.skin)].joints.empty();
 }
 
 JointMatrices joint_matrices(const Skin& skin, const std::vector<glm::dmat4>& world) {
@@ -92,8 +93,10 @@ void DeformedMesh::set_influences() {
             const float weights[4] = {w.x, w.y, w.z, w.w};
             for (std::size_t k = 0; k < 4; ++k) {
                 joints_[4 * (s * count + v) + k] = rest_.joints[s][v][k];
-                influences_[4 * (s * count + v) + k] =
-                    sum > 0 ? static_cast<float>(static_cast<double>(weights[k]) / sum) : s + k == 0 ? 1.0f : 0.0f;
+                influences_[4 * (s * count + v) + k] = sum > 0
+                                                           ? static_cast<float>(static_cast<double>(weights[k]) / sum)
+                                                       : s + k == 0 ? 1.0f
+                                                                    : 0.0f;
             }
         }
     }

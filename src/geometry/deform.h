@@ -36,7 +36,8 @@ class DeformedMesh {
     DeformedMesh(const PreparedMesh& rest, const Primitive& source);
 
     // Makes the vertices for these weights, and joints (null: not skinned). Returns false when nothing of
-    // them has changed since the last call. Without an arena: on this thread. The same bits for every instruction set and number of threads.
+    // them has changed since the last call. Without an arena: on this thread. The same bits for every instruction set
+    // and number of threads.
     bool update(std::span<const float> weights, const JointMatrices* joints, Isa isa, Arena* arena);
     const PreparedMesh& mesh() const { return mesh_; }
 
@@ -49,7 +50,7 @@ class DeformedMesh {
     bool flat_;  // normals belong to faces, and are made anew
     PreparedMesh mesh_;
     bool made_ = false;
-    std::vector<float> weights_, rows_;  // of the last update
+    std::vector<float> weights_, rows_;      // of the last update
     std::vector<Vec3> positions_, normals_;  // between morphs and skin
     std::vector<Vec4> tangents_;
     std::vector<std::uint32_t> joints_;  // as SkinJob has them

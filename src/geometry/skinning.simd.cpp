@@ -46,9 +46,8 @@ TESSERA_INLINE void skin_vertices(const SkinJob& job, std::uint32_t v) {
         for (int k = 0; k < 4; ++k)
             for (int row = 0; row < 3; ++row) {
                 F r[4];
-                load_records(
-                    [&](int lane) { return job.matrices + 12 * std::size_t{joints[4 * lane + k]} + 4 * row; }, r[0],
-                    r[1], r[2], r[3]);
+                load_records([&](int lane) { return job.matrices + 12 * std::size_t{joints[4 * lane + k]} + 4 * row; },
+                             r[0], r[1], r[2], r[3]);
                 for (int c = 0; c < 4; ++c) m[4 * row + c] = m[4 * row + c] + weights[k] * r[c];
             }
     }
@@ -72,8 +71,9 @@ TESSERA_INLINE void skin_vertices(const SkinJob& job, std::uint32_t v) {
         load_records([&](int lane) { return job.tangents + 4 * (std::size_t{v} + static_cast<std::size_t>(lane)); },
                      t.x, t.y, t.z, w);
         const Triple<F> moved = unit<F>({dot(rows[0], t), dot(rows[1], t), dot(rows[2], t)});
-        store_records([&](int lane) { return job.out_tangents + 4 * (std::size_t{v} + static_cast<std::size_t>(lane)); },
-                      moved.x, moved.y, moved.z, w);
+        store_records(
+            [&](int lane) { return job.out_tangents + 4 * (std::size_t{v} + static_cast<std::size_t>(lane)); }, moved.x,
+            moved.y, moved.z, w);
     }
 }
 

@@ -1,5 +1,6 @@
 #include "load/gltf_document.h"
 
+#include "load/gltf_meshopt.h"
 #include "load/uri.h"
 
 #include <algorithm>
@@ -11,10 +12,10 @@ constexpr std::array<std::string_view, static_cast<std::size_t>(GltfArray::kCoun
     "accessors", "animations", "buffers",  "bufferViews", "cameras", "images",  "materials",
     "meshes",    "nodes",      "samplers", "scenes",      "skins",   "textures"};
 
-constexpr std::array<std::string_view, 7> kKnownExtensions = {
-    "KHR_lights_punctual",   "KHR_materials_unlit",   "KHR_materials_emissive_strength",
-    "KHR_texture_transform", "KHR_mesh_quantization", "TESSERA_materials_phong",
-    "TESSERA_lights"};
+constexpr std::array<std::string_view, 9> kKnownExtensions = {
+    "KHR_draco_mesh_compression", "EXT_meshopt_compression",         "KHR_lights_punctual",
+    "KHR_materials_unlit",        "KHR_materials_emissive_strength", "KHR_texture_transform",
+    "KHR_mesh_quantization",      "TESSERA_materials_phong",         "TESSERA_lights"};
 
 // What parsing `json` takes: a padded copy and the strings are at most as long as the text, and each
 // structural character costs up to three 8-byte words of tape and index.
@@ -43,6 +44,7 @@ GltfDocument::GltfDocument(LoadContext& context, std::string_view json,
     for (std::size_t i = 0; i < kArrayNames.size(); ++i)
         if (const std::optional<Json> array = root().find(kArrayNames[i])) arrays_[i] = array->elements();
     buffers_.resize(size(GltfArray::kBuffers));
+    unpacked_.resize(size(GltfArray::kBufferViews));
     check_references();
 }
 
@@ -113,17 +115,30 @@ std::span<const std::byte> GltfDocument::buffer(std::size_t index) {
     return buffer.bytes;
 }
 
-BufferView GltfDocument::view(std::size_t index) {
-    const Json json = item(GltfArray::kBufferViews, index);
-    note_extensions(json);
+std::span<const std::byte> GltfDocument::part_of_buffer(const Json& json) {
     const int number = json.at("buffer").reference(size(GltfArray::kBuffers), "buffer");
     const std::span<const std::byte> bytes = buffer(static_cast<std::size_t>(number));
     const std::uint64_t offset = json.integer_or("byteOffset", 0), length = json.at("byteLength").integer();
     if (offset > bytes.size() || length > bytes.size() - offset)
         json.fail("bytes " + std::to_string(offset) + " + " + std::to_string(length) + " lie outside the buffer of " +
                   std::to_string(bytes.size()) + " bytes");
+    return bytes.subspan(static_cast<std::size_t>(offset), static_cast<std::size_t>(length));
+}
+
+BufferView GltfDocument::view(std::size_t index) {
+    const Json json = item(GltfArray::kBufferViews, index);
+    note_extensions(json);
     BufferView view;
-    view.bytes = bytes.subspan(static_cast<std::size_t>(offset), static_cast<std::size_t>(length));
+    if (const std::optional<Json> packed = find_extension(json, "EXT_meshopt_compression")) {
+        Bytes& unpacked = unpacked_[index];
+        if (unpacked.size() == 0) unpacked = unpack_meshopt(context_, *packed, part_of_buffer(*packed));
+        const std::uint64_t length = json.at("byteLength").integer();
+        if (length > unpacked.size())
+            json.fail(std::to_string(length) + " bytes, but " + std::to_string(unpacked.size()) + " when unpacked");
+        view.bytes = unpacked.span().first(static_cast<std::size_t>(length));
+    } else {
+        view.bytes = part_of_buffer(json);
+    }
     if (const std::optional<Json> stride = json.find("byteStride")) {
         constexpr std::uint64_t kLargestStride = 252;
         view.stride = static_cast<std::size_t>(stride->integer(kLargestStride));

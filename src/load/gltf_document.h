@@ -70,6 +70,8 @@ class GltfDocument {
     void check_asset() const;
     void check_references() const;
     std::span<const std::byte> buffer(std::size_t index);
+    // The bytes that "buffer", "byteOffset" and "byteLength" of an object name.
+    std::span<const std::byte> part_of_buffer(const Json& json);
 
     LoadContext& context_;
     std::optional<std::span<const std::byte>> binary_;
@@ -84,6 +86,7 @@ class GltfDocument {
         std::span<const std::byte> bytes;
     };
     std::vector<Buffer> buffers_;
+    std::vector<Bytes> unpacked_;  // views that were compressed
     std::vector<std::string> ignored_;
 };
 

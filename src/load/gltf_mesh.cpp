@@ -1,5 +1,6 @@
 // Meshes: primitives with their vertex attributes, indices and morph targets.
 #include "load/gltf_accessor.h"
+#include "load/gltf_draco.h"
 #include "load/gltf_parts.h"
 #include "scene/counts.h"
 #include "scene/numbers.h"
@@ -27,11 +28,19 @@ AttributeName parse_name(std::string_view name) {
     return {name.substr(0, underscore), set};
 }
 
-// Opens the accessor that `json` refers to and checks it, with its number of elements unless 0.
-Accessor attribute(GltfDocument& document, const Json& json, std::string_view type, unsigned formats,
-                   std::size_t vertices) {
-    const int number = json.reference(document.size(GltfArray::kAccessors), "accessor");
-    Accessor accessor = open_accessor(document, static_cast<std::size_t>(number));
+// A primitive on its way: what Draco packed of it, if anything.
+struct PrimitiveSource {
+    GltfDocument& document;
+    std::optional<DracoPrimitive> draco = std::nullopt;
+};
+
+// Opens the accessor that `json`, the attribute of that name, refers to and checks it, with its number of
+// elements unless 0.
+Accessor attribute(PrimitiveSource& source, std::string_view name, const Json& json, std::string_view type,
+                   unsigned formats, std::size_t vertices) {
+    const int number = json.reference(source.document.size(GltfArray::kAccessors), "accessor");
+    Accessor accessor = open_accessor(source.document, static_cast<std::size_t>(number));
+    if (source.draco) source.draco->supply(name, accessor);
     expect_format(json, accessor, type, formats);
     if (vertices != 0 && accessor.count != vertices)
         json.fail(std::to_string(accessor.count) + " elements, POSITION has " + std::to_string(vertices));
@@ -53,27 +62,29 @@ std::vector<Vec4> read_colors(GltfDocument& document, const Accessor& accessor) 
     return rgba;
 }
 
-void read_attribute(GltfDocument& document, std::string_view name, const Json& json, Primitive& p) {
+void read_attribute(PrimitiveSource& source, std::string_view name, const Json& json, Primitive& p) {
+    GltfDocument& document = source.document;
     const std::size_t n = p.positions.size();
     const AttributeName parsed = parse_name(name);
     if (name == "POSITION") return;
     if (name == "NORMAL") {
-        p.normals = read_floats<Vec3>(document, attribute(document, json, "VEC3", kFloats | kNormalizedSigned, n));
+        p.normals = read_floats<Vec3>(document, attribute(source, name, json, "VEC3", kFloats | kNormalizedSigned, n));
     } else if (name == "TANGENT") {
-        p.tangents = read_floats<Vec4>(document, attribute(document, json, "VEC4", kFloats | kNormalizedSigned, n));
+        p.tangents = read_floats<Vec4>(document, attribute(source, name, json, "VEC4", kFloats | kNormalizedSigned, n));
     } else if (parsed.base == "TEXCOORD" && parsed.set != kNoSet) {
-        set_of(p.texcoords, parsed.set) = read_floats<Vec2>(document, attribute(document, json, "VEC2", kQuantized, n));
+        set_of(p.texcoords, parsed.set) =
+            read_floats<Vec2>(document, attribute(source, name, json, "VEC2", kQuantized, n));
     } else if (parsed.base == "COLOR" && parsed.set != kNoSet) {
-        const Accessor colors = attribute(document, json, "", kFloats | kNormalizedUnsigned, n);
+        const Accessor colors = attribute(source, name, json, "", kFloats | kNormalizedUnsigned, n);
         if (colors.type != "VEC3") expect_format(json, colors, "VEC4", kFloats | kNormalizedUnsigned);
         set_of(p.colors, parsed.set) = read_colors(document, colors);
     } else if (parsed.base == "JOINTS" && parsed.set != kNoSet) {
-        set_of(p.joints, parsed.set) = read_joints(document, attribute(document, json, "VEC4", kPlainUnsigned, n));
+        set_of(p.joints, parsed.set) = read_joints(document, attribute(source, name, json, "VEC4", kPlainUnsigned, n));
     } else if (parsed.base == "WEIGHTS" && parsed.set != kNoSet) {
         set_of(p.weights, parsed.set) =
-            read_floats<Vec4>(document, attribute(document, json, "VEC4", kFloats | kNormalizedUnsigned, n));
+            read_floats<Vec4>(document, attribute(source, name, json, "VEC4", kFloats | kNormalizedUnsigned, n));
     } else if (name.starts_with('_')) {
-        const Accessor values = attribute(document, json, "", kQuantized | kUnsignedInts, n);
+        const Accessor values = attribute(source, name, json, "", kQuantized | kUnsignedInts, n);
         p.custom.push_back(
             {std::string(name), static_cast<int>(values.components()), read_floats<float>(document, values)});
     } else {
@@ -105,13 +116,14 @@ void pair_joints_and_weights(LoadContext& context, const Json& attributes, Primi
 }
 
 MorphTarget read_target(GltfDocument& document, const Json& json, std::size_t vertices) {
+    PrimitiveSource source{document};
     MorphTarget target;
     json.each_member([&](std::string_view name, const Json& value) {
         if (name != "POSITION" && name != "NORMAL" && name != "TANGENT") {
             document.context().warn(value.place() + ": the morph target's attribute is ignored");
             return;
         }
-        const Accessor accessor = attribute(document, value, "VEC3", kQuantized, vertices);
+        const Accessor accessor = attribute(source, name, value, "VEC3", kQuantized, vertices);
         std::vector<Vec3>& deltas = name == "POSITION" ? target.positions
                                     : name == "NORMAL" ? target.normals
                                                        : target.tangents;
@@ -120,8 +132,10 @@ MorphTarget read_target(GltfDocument& document, const Json& json, std::size_t ve
     return target;
 }
 
-void read_primitive_indices(GltfDocument& document, const Json& json, Primitive& p) {
-    p.indices = read_indices(document, attribute(document, json, "SCALAR", kPlainUnsigned | kUnsignedInts, 0));
+void read_primitive_indices(PrimitiveSource& source, const Json& json, Primitive& p) {
+    Accessor accessor = attribute(source, {}, json, "SCALAR", kPlainUnsigned | kUnsignedInts, 0);
+    if (source.draco) source.draco->supply_indices(accessor);
+    p.indices = read_indices(source.document, accessor);
     const std::uint32_t largest = largest_index(p.indices);
     if (largest >= p.positions.size())
         json.fail("index " + std::to_string(largest) + " of " + std::to_string(p.positions.size()) + " vertices");
@@ -131,6 +145,13 @@ PrimitiveMode read_mode(const Json& json) {
     const std::optional<Json> mode = json.find("mode");
     if (!mode) return PrimitiveMode::kTriangles;
     return static_cast<PrimitiveMode>(mode->integer(6));  // glTF numbers them as PrimitiveMode does
+}
+
+// How many triangles a packed primitive must have: lists of triangles, with indices.
+std::size_t packed_triangles(const GltfDocument& document, const Json& json, PrimitiveMode mode) {
+    if (mode != PrimitiveMode::kTriangles) json.fail("only lists of triangles are packed by Draco");
+    const int indices = json.at("indices").reference(document.size(GltfArray::kAccessors), "accessor");
+    return static_cast<std::size_t>(accessor_count(document, static_cast<std::size_t>(indices)) / 3);
 }
 
 Primitive read_primitive(GltfDocument& document, const Json& json) {
@@ -147,8 +168,11 @@ Primitive read_primitive(GltfDocument& document, const Json& json) {
         context.warn(attributes.place() + ": a primitive without positions is not drawn");
         return p;
     }
-    p.positions = read_floats<Vec3>(document, attribute(document, *positions, "VEC3", kQuantized, 0));
-    attributes.each_member([&](std::string_view name, const Json& value) { read_attribute(document, name, value, p); });
+    PrimitiveSource source{document};
+    if (const std::optional<Json> packed = find_extension(json, "KHR_draco_mesh_compression"))
+        source.draco.emplace(document, *packed, packed_triangles(document, json, p.mode));
+    p.positions = read_floats<Vec3>(document, attribute(source, "POSITION", *positions, "VEC3", kQuantized, 0));
+    attributes.each_member([&](std::string_view name, const Json& value) { read_attribute(source, name, value, p); });
     if (p.normals.empty()) p.tangents.clear();  // section 3.7.2.1: then tangents must be ignored
     pair_joints_and_weights(context, attributes, p);
     if (const std::optional<Json> targets = json.find("targets"))
@@ -156,7 +180,7 @@ Primitive read_primitive(GltfDocument& document, const Json& json) {
             context.charge(sizeof(MorphTarget), target.place());
             p.targets.push_back(read_target(document, target, p.positions.size()));
         });
-    if (const std::optional<Json> indices = json.find("indices")) read_primitive_indices(document, *indices, p);
+    if (const std::optional<Json> indices = json.find("indices")) read_primitive_indices(source, *indices, p);
     return p;
 }
 

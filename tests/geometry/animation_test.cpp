@@ -1,23 +1,19 @@
-// ANI2, ANI3, ANI5: samplers against their definitions in long double, and the vertices of animated models
-// at several times against an independent evaluation in double.
+// ANI2, ANI3: samplers against their definitions in long double; moments.
 #include "geometry/animation.h"
-#include "geometry/matrix.h"
-#include "geometry/prepared_scene.h"
+#include "geometry/animation_definition.h"
 #include "geometry/support.h"
-#include "load/test_files.h"
 
 #include <tessera/error.h>
-#include <tessera/load.h>
 
 #include <array>
 #include <cmath>
-#include <map>
 
 namespace tessera {
 namespace {
 
+using test::definition;
 using test::Random;
-using Real = long double;
+using test::Real;
 
 AnimationSampler random_sampler(Random& random, Interpolation interpolation, std::size_t components, bool rotation) {
     AnimationSampler sampler;
@@ -37,49 +33,6 @@ AnimationSampler random_sampler(Random& random, Interpolation interpolation, std
     return sampler;
 }
 
-// Appendix C of the specification, word by word.
-std::vector<Real> definition(const AnimationSampler& s, Real time, std::size_t n, bool rotation) {
-    const std::size_t keys = s.times.size();
-    const bool cubic = s.interpolation == Interpolation::kCubicSpline;
-    const auto value = [&](std::size_t k, std::size_t part, std::size_t i) {
-        return static_cast<Real>(s.values[(cubic ? 3 * k + part : k) * n + i]);
-    };
-    std::vector<Real> out(n);
-    std::size_t k = 0;
-    while (k + 1 < keys && static_cast<Real>(s.times[k + 1]) <= time) ++k;
-    const bool holds = time < static_cast<Real>(s.times[0]) || k + 1 == keys || s.interpolation == Interpolation::kStep;
-    if (holds) {
-        for (std::size_t i = 0; i < n; ++i) out[i] = value(k, 1, i);
-    } else {
-        const Real td = static_cast<Real>(s.times[k + 1]) - static_cast<Real>(s.times[k]);
-        const Real t = (time - static_cast<Real>(s.times[k])) / td;
-        if (cubic) {
-            for (std::size_t i = 0; i < n; ++i)
-                out[i] = (2 * t * t * t - 3 * t * t + 1) * value(k, 1, i) + td * (t * t * t - 2 * t * t + t) * value(k, 2, i) +
-                         (-2 * t * t * t + 3 * t * t) * value(k + 1, 1, i) + td * (t * t * t - t * t) * value(k + 1, 0, i);
-        } else if (rotation) {
-            Real a[4], b[4], la = 0, lb = 0, d = 0;
-            for (std::size_t i = 0; i < 4; ++i) la += value(k, 1, i) * value(k, 1, i), lb += value(k + 1, 1, i) * value(k + 1, 1, i);
-            for (std::size_t i = 0; i < 4; ++i) {
-                a[i] = value(k, 1, i) / std::sqrt(la), b[i] = value(k + 1, 1, i) / std::sqrt(lb);
-                d += a[i] * b[i];
-            }
-            const Real angle = std::acos(std::min<Real>(std::fabs(d), 1)), sign = d < 0 ? -1 : 1;
-            for (std::size_t i = 0; i < 4; ++i)
-                out[i] = angle < 1e-6L ? (1 - t) * a[i] + t * sign * b[i]
-                                       : (std::sin(angle * (1 - t)) * a[i] + sign * std::sin(angle * t) * b[i]) / std::sin(angle);
-        } else {
-            for (std::size_t i = 0; i < n; ++i) out[i] = (1 - t) * value(k, 1, i) + t * value(k + 1, 1, i);
-        }
-    }
-    if (rotation) {
-        Real squared = 0;
-        for (const Real x : out) squared += x * x;
-        for (Real& x : out) x /= std::sqrt(squared);
-    }
-    return out;
-}
-
 TEST(ANI2_Samplers, FollowTheirDefinition) {
     Random random(21);
     for (int round = 0; round < 3000; ++round) {
@@ -89,10 +42,12 @@ TEST(ANI2_Samplers, FollowTheirDefinition) {
         const AnimationSampler sampler = random_sampler(random, interpolation, n, rotation);
         for (int i = 0; i < 8; ++i) {
             // Between keys, on them, before and behind all.
-            const double time = i == 0   ? static_cast<double>(sampler.times[random.below(static_cast<std::uint32_t>(sampler.times.size()))])
-                                : i == 1 ? static_cast<double>(sampler.times[0]) - 3
-                                : i == 2 ? static_cast<double>(sampler.times.back()) + 3
-                                         : random.in(sampler.times[0], sampler.times.back() + 0.1f);
+            const double time =
+                i == 0
+                    ? static_cast<double>(sampler.times[random.below(static_cast<std::uint32_t>(sampler.times.size()))])
+                : i == 1 ? static_cast<double>(sampler.times[0]) - 3
+                : i == 2 ? static_cast<double>(sampler.times.back()) + 3
+                         : random.in(sampler.times[0], sampler.times.back() + 0.1f);
             std::vector<double> got(n);
             sample_animation(sampler, time, rotation, got);
             const std::vector<Real> want = definition(sampler, time, n, rotation);
@@ -119,7 +74,8 @@ TEST(ANI3_Slerp, TurnsEvenlyAndTakesTheShorterWay) {
         EXPECT_NEAR(q[3], std::cos(half), 1e-7) << i;
     }
     // The same orientation twice, and zero quaternions, stay finite.
-    for (const std::vector<float>& values : {std::vector<float>{0, 0, 0, 1, 0, 0, 0, -1}, std::vector<float>(8, 0.0f)}) {
+    for (const std::vector<float>& values :
+         {std::vector<float>{0, 0, 0, 1, 0, 0, 0, -1}, std::vector<float>(8, 0.0f)}) {
         s.values = values;
         std::array<double, 4> q;
         sample_animation(s, 0.5, true, q);
@@ -138,7 +94,9 @@ TEST(Moments, AreCheckedAndChooseAnimations) {
         animation.channels.push_back({0, i, AnimationPath::kTranslation});
         scene.animations.push_back(animation);
     }
-    const auto x_of = [&](const Moment& m, int node) { return pose_of(scene, m).local[static_cast<std::size_t>(node)][3].x; };
+    const auto x_of = [&](const Moment& m, int node) {
+        return pose_of(scene, m).local[static_cast<std::size_t>(node)][3].x;
+    };
     EXPECT_EQ(x_of({}, 0), 0);
     EXPECT_EQ(x_of({0, 1}, 0), 1);
     EXPECT_EQ(x_of({0, 1}, 1), 0);
@@ -150,300 +108,6 @@ TEST(Moments, AreCheckedAndChooseAnimations) {
     EXPECT_THROW(pose_of(scene, {2, 0}), Error);
     EXPECT_THROW(pose_of(scene, {-5, 0}), Error);
     EXPECT_THROW(pose_of(scene, {0, std::nan("")}), Error);
-}
-
-// --- models --------------------------------------------------------------------------------------
-
-using Matrix = std::array<std::array<Real, 4>, 4>;
-
-Matrix multiply(const Matrix& a, const Matrix& b) {
-    Matrix m{};
-    for (std::size_t r = 0; r < 4; ++r)
-        for (std::size_t c = 0; c < 4; ++c)
-            for (std::size_t k = 0; k < 4; ++k) m[r][c] += a[r][k] * b[k][c];
-    return m;
-}
-std::array<Real, 3> moved_by(const Matrix& m, const std::array<Real, 3>& p) {
-    std::array<Real, 3> q;
-    for (std::size_t r = 0; r < 3; ++r) q[r] = m[r][0] * p[0] + m[r][1] * p[1] + m[r][2] * p[2] + m[r][3];
-    return q;
-}
-Matrix matrix_of(const Mat4& m) {
-    Matrix r;
-    for (int i = 0; i < 4; ++i)
-        for (int j = 0; j < 4; ++j) r[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)] = m(i, j);
-    return r;
-}
-Matrix matrix_of(const std::vector<Real>& t, const std::vector<Real>& q, const std::vector<Real>& s) {
-    const Real x = q[0], y = q[1], z = q[2], w = q[3];
-    return {{{(1 - 2 * (y * y + z * z)) * s[0], 2 * (x * y - w * z) * s[1], 2 * (x * z + w * y) * s[2], t[0]},
-             {2 * (x * y + w * z) * s[0], (1 - 2 * (x * x + z * z)) * s[1], 2 * (y * z - w * x) * s[2], t[1]},
-             {2 * (x * z - w * y) * s[0], 2 * (y * z + w * x) * s[1], (1 - 2 * (x * x + y * y)) * s[2], t[2]},
-             {0, 0, 0, 1}}};
-}
-
-// An evaluation that shares nothing with Tessera's but the scene: recursive, in long double.
-class Evaluation {
-  public:
-    Evaluation(const Scene& scene, int animation, Real time) : scene_(scene), world_(scene.nodes.size()) {
-        for (std::size_t i = 0; i < scene.nodes.size(); ++i) {
-            const Node& n = scene.nodes[i];
-            std::vector<Real> t{n.translation.x, n.translation.y, n.translation.z}, s{n.scale.x, n.scale.y, n.scale.z};
-            std::vector<Real> q{n.rotation.x, n.rotation.y, n.rotation.z, n.rotation.w};
-            bool moved = false;
-            std::vector<Real> w(n.weights.begin(), n.weights.end());
-            if (w.empty() && n.mesh != kNone)
-                for (const float x : scene.meshes[static_cast<std::size_t>(n.mesh)].weights) w.push_back(x);
-            if (animation != kNone)
-                for (const AnimationChannel& c : scene.animations[static_cast<std::size_t>(animation)].channels) {
-                    if (c.node != static_cast<int>(i)) continue;
-                    const AnimationSampler& sampler =
-                        scene.animations[static_cast<std::size_t>(animation)].samplers[static_cast<std::size_t>(c.sampler)];
-                    const std::size_t parts = sampler.interpolation == Interpolation::kCubicSpline ? 3 : 1;
-                    const std::size_t count = sampler.values.size() / sampler.times.size() / parts;
-                    std::vector<Real> v = definition(sampler, time, count, c.path == AnimationPath::kRotation);
-                    if (c.path == AnimationPath::kWeights) {
-                        w = v;
-                        continue;
-                    }
-                    moved = true;
-                    (c.path == AnimationPath::kTranslation ? t : c.path == AnimationPath::kRotation ? q : s) = v;
-                }
-            const Real length = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
-            for (Real& x : q) x /= length;
-            local_.push_back(n.matrix && !moved ? matrix_of(*n.matrix) : matrix_of(t, q, s));
-            weights_.push_back(w);
-        }
-        Matrix identity{};
-        for (std::size_t i = 0; i < 4; ++i) identity[i][i] = 1;
-        for (const int root : scene.scenes[static_cast<std::size_t>(scene.active_scene)].nodes) descend(root, identity);
-    }
-
-    // World space.
-    std::array<Real, 3> vertex(int node, const Primitive& p, std::size_t v) const {
-        const Node& n = scene_.nodes[static_cast<std::size_t>(node)];
-        std::array<Real, 3> at{p.positions[v].x, p.positions[v].y, p.positions[v].z};
-        const std::vector<Real>& w = weights_[static_cast<std::size_t>(node)];
-        for (std::size_t t = 0; t < p.targets.size() && t < w.size(); ++t) {
-            if (p.targets[t].positions.empty()) continue;
-            const Vec3& d = p.targets[t].positions[v];
-            at[0] += w[t] * d.x, at[1] += w[t] * d.y, at[2] += w[t] * d.z;
-        }
-        if (n.skin == kNone || p.joints.empty()) return moved_by(world_[static_cast<std::size_t>(node)], at);
-        const Skin& skin = scene_.skins[static_cast<std::size_t>(n.skin)];
-        std::array<Real, 3> sum{};
-        Real weight_sum = 0;
-        for (std::size_t s = 0; s < p.joints.size(); ++s) {
-            const Vec4& jw = p.weights[s][v];
-            const Real weights[4] = {jw.x, jw.y, jw.z, jw.w};
-            for (std::size_t k = 0; k < 4; ++k) {
-                const std::size_t joint = p.joints[s][v][k];
-                Matrix m = world_[static_cast<std::size_t>(skin.joints[joint])];
-                if (!skin.inverse_bind.empty()) m = multiply(m, matrix_of(skin.inverse_bind[joint]));
-                const std::array<Real, 3> q = moved_by(m, at);
-                for (std::size_t i = 0; i < 3; ++i) sum[i] += weights[k] * q[i];
-                weight_sum += weights[k];
-            }
-        }
-        for (Real& x : sum) x /= weight_sum;
-        return sum;
-    }
-
-  private:
-    void descend(int node, const Matrix& parent) {
-        const auto i = static_cast<std::size_t>(node);
-        world_[i] = multiply(parent, local_[i]);
-        for (const int child : scene_.nodes[i].children) descend(child, world_[i]);
-    }
-    const Scene& scene_;
-    std::vector<Matrix> local_, world_;
-    std::vector<std::vector<Real>> weights_;
-};
-
-// Vertices of everything that is drawn, matched to those of the scene by way of the triangles.
-void expect_vertices(const Scene& scene, PreparedScene& prepared, const Moment& moment, std::uint64_t& compared) {
-    prepared.move_to(moment);
-    const Evaluation truth(scene, moment.animation, moment.time);
-    for (const PreparedNode& node : prepared.nodes())
-        for (std::uint32_t i = node.first; i < node.placement_end; ++i) {
-            const PreparedMesh& mesh = *prepared.placements()[i].mesh;
-            const Primitive& source = *mesh.source;
-            const TriangleList original(source);
-            ASSERT_EQ(original.count(), mesh.triangles.count());
-            for (std::size_t t = 0; t < original.count(); ++t)
-                for (std::size_t k = 0; k < 3; ++k) {
-                    const Vec3 p = mesh.primitive().positions[mesh.triangles[t][k]];
-                    const glm::dvec3 got = transform_point(node.world, to_dvec3(p));
-                    const std::array<Real, 3> want = truth.vertex(node.node, source, original[t][k]);
-                    const Real size = std::max<Real>({1, std::fabs(want[0]), std::fabs(want[1]), std::fabs(want[2])});
-                    ASSERT_NEAR(static_cast<double>(want[0]), got.x, static_cast<double>(1e-5L * size));
-                    ASSERT_NEAR(static_cast<double>(want[1]), got.y, static_cast<double>(1e-5L * size));
-                    ASSERT_NEAR(static_cast<double>(want[2]), got.z, static_cast<double>(1e-5L * size));
-                    ++compared;
-                }
-        }
-}
-
-TEST(ANI5_Models, VerticesAreThoseOfTheDefinition) {
-    std::uint64_t compared = 0;
-    int animated = 0;
-    for (const std::string& name : all_gltf_models()) {
-        SCOPED_TRACE(name);
-        Scene scene;
-        LoadOptions options;
-        options.load_pictures = false;
-        try {
-            scene = load_scene(gltf_model(name).string(), options);
-        } catch (const Error&) {
-            continue;
-        }
-        if (scene.active_scene == kNone || (scene.animations.empty() && scene.skins.empty())) continue;
-        animated += !scene.animations.empty();
-        PreparedScene prepared(scene);
-        expect_vertices(scene, prepared, {}, compared);
-        for (int a = 0; a < static_cast<int>(scene.animations.size()); ++a) {
-            const double end = duration(scene.animations[static_cast<std::size_t>(a)]);
-            for (const double part : {0.0, 0.13, 0.5, 0.77, 1.0, 1.5, 0.13})
-                expect_vertices(scene, prepared, {a, part * end}, compared);
-        }
-    }
-    if (compared == 0) GTEST_SKIP() << "no models: set TESSERA_MODELS";
-    EXPECT_GE(animated, 6);
-}
-
-// A strip of two joints, one of which turns; weights that do not sum to 1; an unskinned primitive beside it.
-Scene bending_strip() {
-    Scene scene;
-    Primitive strip;
-    for (int i = 0; i <= 8; ++i)
-        for (int side = 0; side < 2; ++side) {
-            strip.positions.push_back({static_cast<float>(side) - 0.5f, 0.25f * static_cast<float>(i), 0});
-            strip.normals.push_back({0, 0, 1});
-        }
-    strip.joints.resize(1);
-    strip.weights.resize(1);
-    for (int i = 0; i <= 8; ++i)
-        for (int side = 0; side < 2; ++side) {
-            strip.joints[0].push_back({0, 1, 0, 0});
-            strip.weights[0].push_back({2 - 0.25f * static_cast<float>(i), 0.25f * static_cast<float>(i), 0, 0});
-        }
-    for (std::uint32_t i = 0; i < 8; ++i) {
-        const std::uint32_t a = 2 * i;
-        strip.indices.insert(strip.indices.end(), {a, a + 1, a + 3, a, a + 3, a + 2});
-    }
-    Primitive loose = strip;
-    loose.joints.clear();
-    loose.weights.clear();
-    scene.meshes.push_back({"strip", {strip, loose}, {}, {}});
-    scene.nodes.resize(3);
-    scene.nodes[0].mesh = 0;
-    scene.nodes[0].skin = 0;
-    scene.nodes[0].translation = {100, 0, 0};  // does not count for what is skinned
-    scene.nodes[1].children = {2};
-    scene.nodes[2].translation = {0, 1, 0};
-    Skin skin;
-    skin.joints = {1, 2};
-    skin.inverse_bind.resize(2);
-    skin.inverse_bind[1](1, 3) = -1;
-    scene.skins.push_back(skin);
-    Animation bend;
-    const float h = std::sqrt(0.5f);
-    bend.samplers.push_back({{0, 1}, {0, 0, 0, 1, h, 0, 0, h}, Interpolation::kLinear});
-    bend.channels.push_back({0, 2, AnimationPath::kRotation});
-    scene.animations.push_back(bend);
-    scene.scenes.push_back({"", {0, 1}, ""});
-    return scene;
-}
-
-TEST(ANI5_Skins, BendAndIgnoreTheirNode) {
-    const Scene scene = bending_strip();
-    validate(scene);
-    PreparedScene prepared(scene);
-    ASSERT_EQ(prepared.placements().size(), 2u);
-    std::uint64_t compared = 0;
-    for (const double time : {0.0, 0.3, 1.0}) expect_vertices(scene, prepared, {0, time}, compared);
-    // At the end the second joint's z looks where its y was... and the tip's normal follows it: (0, 0, 1) turned
-    // a quarter about x is (0, -1, 0).
-    const Primitive& skinned = prepared.placements()[1].mesh->primitive();
-    EXPECT_NEAR(skinned.normals.back().y, -1, 1e-6);
-    EXPECT_NEAR(skinned.normals.front().z, 1, 1e-6);
-    // Half way along the strip matrices are mixed, and normals still stand on the surface that they make.
-    const Vec3 a = skinned.positions[8], b = skinned.positions[9], c = skinned.positions[11];
-    const Vec3 e{b.x - a.x, b.y - a.y, b.z - a.z}, f{c.x - a.x, c.y - a.y, c.z - a.z};
-    const Vec3 n = normalize(Vec3{e.y * f.z - e.z * f.y, e.z * f.x - e.x * f.z, e.x * f.y - e.y * f.x});
-    EXPECT_GT(dot(n, skinned.normals[8]), 0.95f);
-}
-
-TEST(ANI5_Skins, MirroredJointsTurnTheWinding) {
-    Scene scene = bending_strip();
-    PreparedScene straight(scene);
-    EXPECT_FALSE(straight.nodes().back().mirrored);
-    scene.nodes[1].scale = {-1, 1, 1};
-    PreparedScene mirrored(scene);
-    ASSERT_EQ(mirrored.nodes().size(), straight.nodes().size());
-    const PreparedNode* skinned = nullptr;
-    for (const PreparedNode& node : mirrored.nodes())
-        if (node.node == 0 && node.mirrored) skinned = &node;
-    ASSERT_TRUE(skinned);
-    // Normals stay on the outside.
-    EXPECT_NEAR(mirrored.placements()[skinned->first].mesh->primitive().normals.front().z, 1, 1e-6);
-}
-
-// Without normals in the file, faces are flat wherever the vertices go.
-TEST(ANI5_Morphs, FlatNormalsFollowTheShape) {
-    Scene scene;
-    Primitive p;
-    p.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
-    p.targets.resize(1);
-    p.targets[0].positions = {{0, 0, 0}, {0, 0, 0}, {0, -1, 1}};
-    scene.meshes.push_back({"", {p}, {0}, {}});
-    scene.nodes.resize(1);
-    scene.nodes[0].mesh = 0;
-    scene.scenes.push_back({"", {0}, ""});
-    Animation a;
-    a.samplers.push_back({{0, 1}, {0, 1}, Interpolation::kLinear});
-    a.channels.push_back({0, 0, AnimationPath::kWeights});
-    scene.animations.push_back(a);
-    validate(scene);
-    PreparedScene prepared(scene);
-    EXPECT_EQ(prepared.placements()[0].mesh->primitive().normals[0], (Vec3{0, 0, 1}));
-    prepared.move_to({0, 1});
-    EXPECT_EQ(prepared.placements()[0].mesh->primitive().positions[2], (Vec3{0, 0, 1}));
-    EXPECT_EQ(prepared.placements()[0].mesh->primitive().normals[0], (Vec3{0, -1, 0}));
-    EXPECT_EQ(prepared.placements()[0].mesh->bounds.max, (Vec3{1, 0, 1}));
-    // Weights that stand in the file count without any animation, and for the bounds.
-    scene.nodes[0].weights = {1};
-    EXPECT_EQ(PreparedScene(scene).placements()[0].mesh->primitive().positions[2], (Vec3{0, 0, 1}));
-    EXPECT_EQ(visible_bounds(scene).max, (Vec3{1, 0, 1}));
-}
-
-// Copies that stand at one place are dropped only as long as they do.
-TEST(Moments, DuplicatesPart) {
-    Scene scene;
-    Primitive p;
-    p.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
-    scene.meshes.push_back({"", {p}, {}, {}});
-    scene.nodes.resize(2);
-    scene.nodes[0].mesh = scene.nodes[1].mesh = 0;
-    scene.scenes.push_back({"", {0, 1}, ""});
-    Animation a;
-    a.samplers.push_back({{0, 1}, {0, 0, 0, 5, 0, 0}, Interpolation::kLinear});
-    a.channels.push_back({0, 1, AnimationPath::kTranslation});
-    scene.animations.push_back(a);
-    PreparedScene prepared(scene);
-    EXPECT_EQ(prepared.placements().size(), 1u);
-    prepared.move_to({0, 1});
-    EXPECT_EQ(prepared.placements().size(), 2u);
-    // The framing camera sees all of the animation from the beginning, and does not move.
-    PreparedScene framed(scene);
-    framed.move_to({0, 0});
-    const PlacedCamera first = framed.camera({}, 1);
-    framed.move_to({0, 0.7});
-    const PlacedCamera later = framed.camera({}, 1);
-    for (int c = 0; c < 4; ++c)
-        for (int r = 0; r < 4; ++r) EXPECT_EQ(first.camera_to_world[c][r], later.camera_to_world[c][r]);
-    PreparedScene still(scene);
-    EXPECT_NE(still.camera({}, 1).camera_to_world[3].x, first.camera_to_world[3].x);
 }
 
 }  // namespace

@@ -22,9 +22,20 @@ struct SkinCase {
     GuardedArray<std::uint32_t> numbers;
 
     SkinCase(Random& random, std::uint32_t j, std::uint32_t s, std::uint32_t n, bool odd)
-        : joints(j), sets(s), count(n), matrices(12 * j), weights(4 * s * n), positions(3 * n), normals(3 * n),
-          tangents(4 * n), numbers(4 * s * n) {
-        constexpr float kOdd[] = {0.0f, -0.0f, 1e-42f, 3e38f, std::numeric_limits<float>::infinity(),
+        : joints(j),
+          sets(s),
+          count(n),
+          matrices(12 * j),
+          weights(4 * s * n),
+          positions(3 * n),
+          normals(3 * n),
+          tangents(4 * n),
+          numbers(4 * s * n) {
+        constexpr float kOdd[] = {0.0f,
+                                  -0.0f,
+                                  1e-42f,
+                                  3e38f,
+                                  std::numeric_limits<float>::infinity(),
                                   std::numeric_limits<float>::quiet_NaN()};
         const auto fill = [&](GuardedArray<float>& values, float size) {
             for (std::size_t i = 0; i < values.size(); ++i)
@@ -83,7 +94,8 @@ TEST_P(SkinKernelTest, ANI5_GivesTheBitsOfOneLane) {
     for (int round = 0; round < 300; ++round) {
         const std::uint32_t n = 1 + random.below(70), sets = 1 + random.below(3), joints = 1 + random.below(20);
         const SkinCase c(random, joints, sets, n, round % 3 == 0);
-        const std::uint32_t first = round % 4 == 0 ? random.below(n) : 0, end = round % 5 == 0 ? first + random.below(n - first + 1) : n;
+        const std::uint32_t first = round % 4 == 0 ? random.below(n) : 0,
+                            end = round % 5 == 0 ? first + random.below(n - first + 1) : n;
         SkinResult got(n), want(n);
         got.run(c, skin_kernels(GetParam()), round % 2 != 0, round % 7 < 4, first, end);
         want.run(c, skin_kernels(Isa::kScalar), round % 2 != 0, round % 7 < 4, first, end);
@@ -116,7 +128,8 @@ TEST(SkinKernel, ANI5_MixesMatricesByWeight) {
                 EXPECT_NEAR(at(got.positions, 3 * v + r), want, 1e-4);
             }
             // A normal stays at right angles to what it was at right angles to.
-            double side[3] = {at(c.normals, 3 * v + 1), -at(c.normals, 3 * v), 0}, moved[3], dot = 0, length = 0, unit = 0;
+            double side[3] = {at(c.normals, 3 * v + 1), -at(c.normals, 3 * v), 0}, moved[3], dot = 0, length = 0,
+                   unit = 0;
             for (std::size_t r = 0; r < 3; ++r) {
                 moved[r] = m[4 * r] * side[0] + m[4 * r + 1] * side[1] + m[4 * r + 2] * side[2];
                 dot += moved[r] * at(got.normals, 3 * v + r);

@@ -81,7 +81,8 @@ void compare_attributes(const Primitive& ours, const aiMesh& theirs) {
         ASSERT_TRUE(theirs.HasTextureCoords(s));
         for (unsigned v = 0; v < theirs.mNumVertices; ++v) {
             ASSERT_NEAR(ours.texcoords[s][v].x, theirs.mTextureCoords[s][v].x, 1e-6);
-            ASSERT_NEAR(ours.texcoords[s][v].y, 1 - theirs.mTextureCoords[s][v].y, 1e-6);  // assimp turns v over
+            ASSERT_NEAR(ours.texcoords[s][v].y, 1 - theirs.mTextureCoords[s][v].y,
+                        1e-6 * std::max(1.0f, std::fabs(ours.texcoords[s][v].y)));  // assimp turns v over
         }
     }
 }
@@ -161,8 +162,6 @@ TEST_P(Oracle, ReadsTheSame) {
     } catch (const Error& error) {
         GTEST_SKIP() << error.what();
     }
-    for (const std::string& name : ours.extensions_ignored)
-        if (name == "KHR_draco_mesh_compression") GTEST_SKIP() << "assimp reads the compressed twin of these meshes";
     Assimp::Importer importer;
     const aiScene* theirs = importer.ReadFile(gltf_model(GetParam()).string(), 0);
     if (!theirs) GTEST_SKIP() << "assimp: " << importer.GetErrorString();

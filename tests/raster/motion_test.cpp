@@ -12,8 +12,9 @@ using namespace test;
 
 std::vector<std::string> moving_models() {
     std::vector<std::string> names;
-    for (const char* name : {"RiggedSimple/glTF-Binary/RiggedSimple.glb", "AnimatedMorphCube/glTF-Binary/AnimatedMorphCube.glb",
-                             "BoxAnimated/glTF-Binary/BoxAnimated.glb", "SimpleMorph/glTF/SimpleMorph.gltf"})
+    for (const char* name :
+         {"RiggedSimple/glTF-Binary/RiggedSimple.glb", "AnimatedMorphCube/glTF-Binary/AnimatedMorphCube.glb",
+          "BoxAnimated/glTF-Binary/BoxAnimated.glb", "SimpleMorph/glTF/SimpleMorph.gltf"})
         if (std::filesystem::exists(gltf_model(name))) names.push_back(gltf_model(name).string());
     return names;
 }
