@@ -59,6 +59,10 @@ struct Material {
     Vec3 emissive{0, 0, 0};  // ke of the Phong models
     float emissive_strength = 1;
     float normal_scale = 1, occlusion_strength = 1;
+    // What the part that is no metal reflects at normal incidence: ((ior - 1) / (ior + 1))^2 times the colour, times
+    // the strength, which also counts at grazing angles. An index of 0 stands for an infinite one (glTF).
+    float ior = 1.5f, specular_strength = 1;
+    Vec3 specular_color{1, 1, 1};
 
     // Lambert, Phong and Blinn-Phong (linear colours); the base-colour texture modulates ka and kd.
     Vec3 ambient{0, 0, 0}, diffuse{0.8f, 0.8f, 0.8f}, specular{0, 0, 0};  // ka, kd, ks

@@ -41,6 +41,11 @@ struct CustomAttribute {
     std::vector<float> values;
 };
 
+// The material that a primitive takes in one of the scene's variants.
+struct VariantMaterial {
+    int variant = kNone, material = kNone;
+};
+
 // One draw: vertices of one mode and one material. Every non-empty attribute has one entry per
 // vertex. Counter-clockwise is front.
 struct Primitive {
@@ -55,7 +60,8 @@ struct Primitive {
     std::vector<std::vector<Vec4>> weights;  // as many sets as joints
     std::vector<CustomAttribute> custom;
     std::vector<MorphTarget> targets;
-    std::vector<std::uint32_t> indices;  // empty: 0, 1, 2, ...
+    std::vector<std::uint32_t> indices;     // empty: 0, 1, 2, ...
+    std::vector<VariantMaterial> variants;  // where they differ from `material`
     std::string extras;
 };
 
@@ -95,6 +101,13 @@ struct Light {
 
 // --- nodes, skins, animations ---------------------------------------------------------------
 
+// A placement of a node's mesh relative to the node: translation * rotation * scale.
+struct MeshInstance {
+    Vec3 translation{0, 0, 0};
+    Quat rotation;
+    Vec3 scale{1, 1, 1};
+};
+
 struct Node {
     std::string name;
     std::vector<int> children;
@@ -105,6 +118,8 @@ struct Node {
     Vec3 scale{1, 1, 1};
     int mesh = kNone, camera = kNone, light = kNone, skin = kNone;
     std::vector<float> weights;  // morph weights; empty: those of the mesh
+    // Copies of the mesh, in place of the one at the node; a skinned mesh has none.
+    std::vector<MeshInstance> instances;
     std::string extras;
 };
 
@@ -159,6 +174,8 @@ struct Scene {
     std::vector<SceneRoots> scenes;
     int active_scene = 0;  // kNone: nothing is drawn
 
+    std::vector<std::string> variants;  // names of sets of materials; choose_variant() takes one
+
     // Ambient radiance (the textbooks' Ia); unset: what RenderOptions says.
     std::optional<Vec3> ambient;
 
@@ -170,6 +187,8 @@ struct Scene {
 // Throws kUsage, naming the place ("nodes/3/mesh"), unless every reference is in range, every
 // attribute has its length, all numbers are finite and the nodes form a forest.
 TESSERA_API void validate(const Scene& scene);
+// Gives every primitive the material that it has in the variant; kUsage for one that does not exist.
+TESSERA_API void choose_variant(Scene& scene, int variant);
 // Bytes held by the vectors and pictures of the scene.
 TESSERA_API std::uint64_t memory_bytes(const Scene& scene);
 

@@ -140,6 +140,7 @@ void add_render_options(CLI::App& app, RenderArguments& a) {
     app.add_flag("-q,--quiet", a.quiet, "nothing on stderr but errors")->group("Input and output");
 
     option("Picture", "-s,--size", a.size, "WxH", "size in pixels (default 1024x768)");
+    option("Picture", "--variant", a.variant, "NAME|INDEX", "the scene's set of materials of that name");
     option("Picture", "--engine", a.engine, "NAME",
            "raster (the default), reference-raster (the same bits, slowly) or reference-trace (hard shadows)");
     option("Picture", "--samples", a.samples, "N", "samples per pixel, 1 .. 256 (default 4)");
@@ -219,6 +220,7 @@ RenderJob parse_render_arguments(const RenderArguments& a) {
     render.encoding =
         choose<Encoding>("--encoding", a.encoding, {{"srgb", Encoding::kSrgb}, {"linear", Encoding::kLinear}});
     job.camera = a.camera;
+    job.variant = a.variant;
     parse_animation(a, job);
     render.view = parse_view(a, job.z_is_up);
 

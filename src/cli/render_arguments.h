@@ -16,7 +16,7 @@ namespace tessera::cli {
 struct RenderArguments {
     std::string scene, output, stats;
     std::string size = "1024x768", engine = "raster", samples = "4", filter = "box", aov = "color";
-    std::string time, animation, frames, fps = "24";
+    std::string time, animation, frames, fps = "24", variant;
     std::string camera, eye, target, up = "y", fov;
     std::string show, background = "white", exposure = "auto", tone_map = "neutral", encoding = "srgb", color_bits;
     std::string lighting = "auto", ambient;
@@ -42,7 +42,7 @@ struct Frames {
 struct RenderJob {
     LoadOptions load;
     RenderOptions render;
-    std::string camera, animation;
+    std::string camera, animation, variant;
     std::optional<double> time;    // seconds
     std::optional<Frames> frames;  // a sequence
     bool skip_existing = false;

@@ -173,6 +173,7 @@ int run(const RenderArguments& arguments) {
     const Stopwatch loading;
     Scene scene = load_input(arguments.scene, job.load);
     times.load_ms = loading.milliseconds();
+    if (!job.variant.empty()) choose_variant(scene, find_variant(scene, job.variant));
     choose_moment(job, scene);
     place_view(job, scene);
 

@@ -22,6 +22,12 @@ std::optional<int> index_below(const std::string& text, int count) {
     return std::nullopt;
 }
 
+const std::string& name_of(const std::string& name) { return name; }
+template <class Part>
+const std::string& name_of(const Part& part) {
+    return part.name;
+}
+
 template <class Part>
 [[noreturn]] void refuse_unknown(const std::string& option, const std::string& what, const std::string& text,
                                  const std::vector<Part>& parts) {
@@ -29,7 +35,7 @@ template <class Part>
     constexpr std::size_t kListed = 12;
     for (std::size_t i = 0; i < std::min(parts.size(), kListed); ++i)
         reason += (i == 0 ? "; there are: " : ", ") + std::to_string(i) +
-                  (parts[i].name.empty() ? "" : " '" + parts[i].name + "'");
+                  (name_of(parts[i]).empty() ? "" : " '" + name_of(parts[i]) + "'");
     if (parts.size() > kListed) reason += ", ...";
     refuse(option, reason);
 }
@@ -67,6 +73,14 @@ int find_animation(const Scene& scene, const std::string& text) {
     if (text == "all") return kEveryAnimation;
     if (const std::optional<int> index = index_below(text, static_cast<int>(scene.animations.size()))) return *index;
     refuse_unknown("--animation", "animation", text, scene.animations);
+}
+
+int find_variant(const Scene& scene, const std::string& text) {
+    if (scene.variants.empty()) refuse("--variant", "the scene has no variants");
+    for (std::size_t i = 0; i < scene.variants.size(); ++i)
+        if (scene.variants[i] == text) return static_cast<int>(i);
+    if (const std::optional<int> index = index_below(text, static_cast<int>(scene.variants.size()))) return *index;
+    refuse_unknown("--variant", "variant", text, scene.variants);
 }
 
 Vec3 turn_z_up(Vec3 p) { return {p.x, p.z, -p.y}; }

@@ -23,6 +23,10 @@ int find_camera(const Scene& scene, const std::string& text);
 // with the names that there are otherwise.
 int find_animation(const Scene& scene, const std::string& text);
 
+// The index of the variant that `text` names (its name or a number); kUsage with the names that there are
+// otherwise.
+int find_variant(const Scene& scene, const std::string& text);
+
 // Turns a scene whose up axis is Z into one with Y up, exactly: (x, y, z) becomes (x, z, -y).
 void turn_z_up(Scene& scene);
 Vec3 turn_z_up(Vec3 point);

@@ -158,8 +158,9 @@ SceneSummary summarize(const Scene& scene) {
         pending.pop_back();
         pending.insert(pending.end(), node.children.begin(), node.children.end());
         if (node.mesh == kNone) continue;
-        ++summary.drawn_instances;
-        summary.drawn_triangles += triangles_of_mesh[static_cast<std::size_t>(node.mesh)];
+        const std::uint64_t copies = node.instances.empty() ? 1 : node.instances.size();
+        summary.drawn_instances += copies;
+        summary.drawn_triangles += copies * triangles_of_mesh[static_cast<std::size_t>(node.mesh)];
     }
     summary.memory_bytes = memory_bytes(scene);
     summary.bounds = visible_bounds(scene);
@@ -193,7 +194,8 @@ std::string summary_text(const std::string& file, const Scene& scene, const Scen
     text += line("skins", std::to_string(scene.skins.size()));
     text +=
         list("animations", scene.animations, [](const Animation& a) { return titled(a, number(duration(a)) + " s"); });
-    text += names("extensions used", scene.extensions_used) + names("extensions required", scene.extensions_required) +
+    text += names("variants", scene.variants) + names("extensions used", scene.extensions_used) +
+            names("extensions required", scene.extensions_required) +
             names("extensions ignored", scene.extensions_ignored);
     for (const std::string& warning : scene.warnings) text += line("warning", printable(warning));
     return text;
@@ -232,6 +234,7 @@ std::string summary_json(const std::string& file, const Scene& scene, const Scen
     write(json, "cameras", scene.cameras, [&](const Camera& c) { json.member("type", type_name(c)); });
     write(json, "lights", scene.lights, [&](const Light& l) { json.member("type", type_name(l)); });
     write(json, "animations", scene.animations, [&](const Animation& a) { json.member("duration_s", duration(a)); });
+    write(json, "variants", scene.variants);
     write(json, "extensions_used", scene.extensions_used);
     write(json, "extensions_required", scene.extensions_required);
     write(json, "extensions_ignored", scene.extensions_ignored);

@@ -121,8 +121,13 @@ Bounds3 visible_bounds(const Scene& scene) {
         if (mesh == kNone) continue;
         MeshPoints& drawn = meshes[static_cast<std::size_t>(mesh)];
         if (!drawn.ready) drawn = drawn_points(scene.meshes[static_cast<std::size_t>(mesh)]);
-        const glm::dmat4& to_world = nodes.world[static_cast<std::size_t>(n)];
-        if (may_widen(box, drawn.box, to_world)) add_points(box, drawn.points, to_world);
+        const auto add = [&](const glm::dmat4& to_world) {
+            if (may_widen(box, drawn.box, to_world)) add_points(box, drawn.points, to_world);
+        };
+        const glm::dmat4& world = nodes.world[static_cast<std::size_t>(n)];
+        const std::vector<MeshInstance>& instances = scene.nodes[static_cast<std::size_t>(n)].instances;
+        if (instances.empty()) add(world);
+        for (const MeshInstance& instance : instances) add(world * instance_matrix(instance));
     }
     return rounded(box);
 }

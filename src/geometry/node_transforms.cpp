@@ -11,6 +11,8 @@ glm::dmat4 local_matrix(const Node& node) {
     return node.matrix ? to_dmat4(*node.matrix) : compose_matrix(node.translation, node.rotation, node.scale);
 }
 
+glm::dmat4 instance_matrix(const MeshInstance& i) { return compose_matrix(i.translation, i.rotation, i.scale); }
+
 NodeTransforms node_transforms(const Scene& scene) {
     std::vector<glm::dmat4> local;
     local.reserve(scene.nodes.size());

@@ -19,6 +19,9 @@ struct NodeTransforms {
 // The node's own matrix, or translation * rotation * scale.
 glm::dmat4 local_matrix(const Node& node);
 
+// Of an instance to its node.
+glm::dmat4 instance_matrix(const MeshInstance& instance);
+
 // Matrices may be non-finite where scales multiply beyond the range of double.
 NodeTransforms node_transforms(const Scene& scene);
 // With these matrices to the parents, by node, in place of the scene's.

@@ -64,29 +64,35 @@ void PreparedScene::place_nodes() {
     for (const int index : transforms_.order) {
         const Node& node = scene_.nodes[static_cast<std::size_t>(index)];
         const glm::dmat4& world = transforms_.world[static_cast<std::size_t>(index)];
-        const auto first = static_cast<std::uint32_t>(placements_.size());
-        PreparedNode prepared{index, node.light, node.mesh != kNone, false, first, first, world};
         skinned.clear();
-        if (prepared.has_mesh)
-            for (const Primitive& p : scene_.meshes[static_cast<std::size_t>(node.mesh)].primitives) {
-                if (!is_drawn(p.mode)) {
-                    prepared.has_undrawn = true;
-                } else if (triangle_count(p) == 0) {
-                    continue;
-                } else if (is_skinned(scene_, node, p)) {
-                    skinned.push_back(&p);
-                } else if (is_morphed(p)) {
-                    place(p, deform(index, p, nullptr));
-                } else if (!is_solid(scene_, p) || taken.insert(&p, world)) {
-                    place(p, prepare(p));
+        // Instances are nodes of their own as far as drawing goes; the first carries the light.
+        const std::size_t copies = node.mesh == kNone || node.instances.empty() ? 1 : node.instances.size();
+        for (std::size_t copy = 0; copy < copies; ++copy) {
+            const auto first = static_cast<std::uint32_t>(placements_.size());
+            PreparedNode prepared{index, copy == 0 ? node.light : kNone, node.mesh != kNone, false, first, first,
+                                  world};
+            if (!node.instances.empty()) prepared.world = world * instance_matrix(node.instances[copy]);
+            if (prepared.has_mesh)
+                for (const Primitive& p : scene_.meshes[static_cast<std::size_t>(node.mesh)].primitives) {
+                    if (!is_drawn(p.mode)) {
+                        prepared.has_undrawn = true;
+                    } else if (triangle_count(p) == 0) {
+                        continue;
+                    } else if (is_skinned(scene_, node, p)) {
+                        if (copy == 0) skinned.push_back(&p);
+                    } else if (is_morphed(p)) {
+                        place(p, deform(index, p, nullptr));
+                    } else if (!is_solid(scene_, p) || taken.insert(&p, prepared.world)) {
+                        place(p, prepare(p));
+                    }
                 }
-            }
-        prepared.placement_end = static_cast<std::uint32_t>(placements_.size());
-        if (prepared.has_mesh || prepared.light != kNone) nodes_.push_back(prepared);
+            prepared.placement_end = static_cast<std::uint32_t>(placements_.size());
+            if (prepared.has_mesh || prepared.light != kNone) nodes_.push_back(prepared);
+        }
         if (skinned.empty()) continue;
         const JointMatrices joints =
             joint_matrices(scene_.skins[static_cast<std::size_t>(node.skin)], transforms_.world);
-        const std::uint32_t begin = prepared.placement_end;
+        const auto begin = static_cast<std::uint32_t>(placements_.size());
         for (const Primitive* p : skinned) place(*p, deform(index, *p, &joints));
         nodes_.push_back({index, kNone, true, false, begin, static_cast<std::uint32_t>(placements_.size()),
                           joints.object_to_world, joints.mirrored});

@@ -65,6 +65,11 @@ void read_header(GltfDocument& document, Scene& scene) {
             document.note_extension(name.string());
         });
     document.note_extensions(root);
+    if (const std::optional<Json> variants = find_extension(root, "KHR_materials_variants"))
+        variants->at("variants").each([&](const Json& variant, std::size_t) {
+            document.context().charge(sizeof(std::string) + 64, variant.place());
+            scene.variants.emplace_back(variant.at("name").string());
+        });
 }
 
 }  // namespace tessera

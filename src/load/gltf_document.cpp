@@ -12,10 +12,20 @@ constexpr std::array<std::string_view, static_cast<std::size_t>(GltfArray::kCoun
     "accessors", "animations", "buffers",  "bufferViews", "cameras", "images",  "materials",
     "meshes",    "nodes",      "samplers", "scenes",      "skins",   "textures"};
 
-constexpr std::array<std::string_view, 9> kKnownExtensions = {
-    "KHR_draco_mesh_compression", "EXT_meshopt_compression",         "KHR_lights_punctual",
-    "KHR_materials_unlit",        "KHR_materials_emissive_strength", "KHR_texture_transform",
-    "KHR_mesh_quantization",      "TESSERA_materials_phong",         "TESSERA_lights"};
+constexpr std::array<std::string_view, 14> kKnownExtensions = {"KHR_draco_mesh_compression",
+                                                               "EXT_meshopt_compression",
+                                                               "EXT_mesh_gpu_instancing",
+                                                               "KHR_materials_variants",
+                                                               "KHR_materials_pbrSpecularGlossiness",
+                                                               "KHR_materials_ior",
+                                                               "KHR_materials_specular",
+                                                               "KHR_lights_punctual",
+                                                               "KHR_materials_unlit",
+                                                               "KHR_materials_emissive_strength",
+                                                               "KHR_texture_transform",
+                                                               "KHR_mesh_quantization",
+                                                               "TESSERA_materials_phong",
+                                                               "TESSERA_lights"};
 
 // What parsing `json` takes: a padded copy and the strings are at most as long as the text, and each
 // structural character costs up to three 8-byte words of tape and index.
@@ -46,6 +56,11 @@ GltfDocument::GltfDocument(LoadContext& context, std::string_view json,
     buffers_.resize(size(GltfArray::kBuffers));
     unpacked_.resize(size(GltfArray::kBufferViews));
     check_references();
+}
+
+std::size_t GltfDocument::variant_count() const {
+    const std::optional<Json> extension = find_extension(root(), "KHR_materials_variants");
+    return extension ? extension->at("variants").elements().size() : 0;
 }
 
 void GltfDocument::parse(std::string_view json) {

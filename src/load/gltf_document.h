@@ -48,6 +48,8 @@ class GltfDocument {
 
     LoadContext& context() { return context_; }
     Json root() const { return Json(root_, JsonPath(), context_.file()); }
+    // Of KHR_materials_variants.
+    std::size_t variant_count() const;
     std::size_t size(GltfArray array) const { return arrays_[static_cast<std::size_t>(array)].size(); }
     Json item(GltfArray array, std::size_t index) const;
     template <class F>

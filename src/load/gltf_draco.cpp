@@ -93,7 +93,8 @@ DracoPrimitive::DracoPrimitive(GltfDocument& document, const Json& json, std::si
     if (mesh.num_faces() != triangles) json.fail("the data of Draco are damaged");
     indices_.reserve(3 * triangles);
     for (std::uint32_t f = 0; f < mesh.num_faces(); ++f)
-        for (int k = 0; k < 3; ++k) indices_.push_back(mesh.face(draco::FaceIndex(f))[static_cast<std::size_t>(k)].value());
+        for (int k = 0; k < 3; ++k)
+            indices_.push_back(mesh.face(draco::FaceIndex(f))[static_cast<std::size_t>(k)].value());
     json.at("attributes").each_member([&](std::string_view name, const Json& id) {
         ids_[std::string(name)] = static_cast<std::uint32_t>(id.integer(0xffffffff));
     });
@@ -105,12 +106,15 @@ void DracoPrimitive::supply(std::string_view attribute, Accessor& accessor) {
     const draco::PointAttribute* values = unpacked_->mesh->GetAttributeByUniqueId(id->second);
     if (!values) json_.at("attributes").fail("attribute " + std::to_string(id->second) + " is not packed");
     if (accessor.count != vertices_)
-        json_.fail(std::to_string(vertices_) + " vertices are packed, the accessor has " + std::to_string(accessor.count));
+        json_.fail(std::to_string(vertices_) + " vertices are packed, the accessor has " +
+                   std::to_string(accessor.count));
     if (static_cast<std::size_t>(values->num_components()) != accessor.components() || accessor.columns != 1)
-        json_.at("attributes").fail("the packed attribute has " + std::to_string(values->num_components()) + " components");
-    const std::size_t size = accessor.component == ComponentType::kFloat || accessor.component == ComponentType::kUnsignedInt ? 4
-                             : accessor.component == ComponentType::kByte || accessor.component == ComponentType::kUnsignedByte ? 1
-                                                                                                                                : 2;
+        json_.at("attributes")
+            .fail("the packed attribute has " + std::to_string(values->num_components()) + " components");
+    const std::size_t size =
+        accessor.component == ComponentType::kFloat || accessor.component == ComponentType::kUnsignedInt   ? 4
+        : accessor.component == ComponentType::kByte || accessor.component == ComponentType::kUnsignedByte ? 1
+                                                                                                           : 2;
     const std::size_t stride = size * accessor.components();
     context_.charge(std::uint64_t{stride} * vertices_, json_.place());
     values_.emplace_back(stride * vertices_);

@@ -15,6 +15,10 @@ class MaterialReader {
         m_.name = json_.string_or("name");
         m_.extras = json_.raw_or_empty("extras");
         if (const std::optional<Json> pbr = json_.find("pbrMetallicRoughness")) read_metallic_roughness(*pbr);
+        if (const auto extension = find_extension(json_, "KHR_materials_pbrSpecularGlossiness"))
+            read_specular_glossiness(*extension);
+        if (const auto extension = find_extension(json_, "KHR_materials_ior")) read_ior(*extension);
+        if (const auto extension = find_extension(json_, "KHR_materials_specular")) read_specular(*extension);
         read_texture(json_, "emissiveTexture", TextureSlot::kEmissive);
         read_factor(json_, "emissiveFactor", {&m_.emissive.x, 3}, 1);
         if (const std::optional<Json> info = read_texture(json_, "normalTexture", TextureSlot::kNormal))
@@ -78,6 +82,41 @@ class MaterialReader {
         read_factor(pbr, "roughnessFactor", {&m_.roughness, 1}, 1);
         read_texture(pbr, "baseColorTexture", TextureSlot::kBaseColor);
         read_texture(pbr, "metallicRoughnessTexture", TextureSlot::kMetallicRoughness);
+    }
+
+    // As a dielectric whose reflectance is the specular colour.
+    void read_specular_glossiness(const Json& pbr) {
+        document_.note_extensions(pbr);
+        m_.base_color = {1, 1, 1, 1};
+        m_.metallic = 0;
+        m_.ior = 0;
+        float glossiness = 1;
+        read_factor(pbr, "diffuseFactor", {&m_.base_color.x, 4}, 1);
+        read_factor(pbr, "specularFactor", {&m_.specular_color.x, 3}, 1);
+        read_factor(pbr, "glossinessFactor", {&glossiness, 1}, 1);
+        m_.roughness = 1 - glossiness;
+        m_.texture(TextureSlot::kBaseColor) = m_.texture(TextureSlot::kMetallicRoughness) = {};
+        read_texture(pbr, "diffuseTexture", TextureSlot::kBaseColor);
+        leave_out(pbr, "specularGlossinessTexture");
+    }
+
+    void read_ior(const Json& json) {
+        read_factor(json, "ior", {&m_.ior, 1}, kNoMaximum);
+        if (m_.ior >= 1 || m_.ior == 0) return;
+        document_.context().warn(json.place() + ": an index of refraction below 1 is taken as 1");
+        m_.ior = 1;
+    }
+
+    void read_specular(const Json& json) {
+        read_factor(json, "specularFactor", {&m_.specular_strength, 1}, 1);
+        read_factor(json, "specularColorFactor", {&m_.specular_color.x, 3}, kNoMaximum);
+        leave_out(json, "specularTexture");
+        leave_out(json, "specularColorTexture");
+    }
+
+    void leave_out(const Json& object, std::string_view texture) {
+        if (const std::optional<Json> json = object.find(texture))
+            document_.context().warn(json->place() + ": is not drawn; the factors count");
     }
 
     void read_alpha() {

@@ -147,6 +147,17 @@ PrimitiveMode read_mode(const Json& json) {
     return static_cast<PrimitiveMode>(mode->integer(6));  // glTF numbers them as PrimitiveMode does
 }
 
+// KHR_materials_variants: materials, and the variants of the scene that take them.
+void read_variants(GltfDocument& document, const Json& json, Primitive& p) {
+    json.at("mappings").each([&](const Json& mapping, std::size_t) {
+        const int material = mapping.at("material").reference(document.size(GltfArray::kMaterials), "material");
+        mapping.at("variants").each([&](const Json& variant, std::size_t) {
+            document.context().charge(sizeof(VariantMaterial), variant.place());
+            p.variants.push_back({variant.reference(document.variant_count(), "variant"), material});
+        });
+    });
+}
+
 // How many triangles a packed primitive must have: lists of triangles, with indices.
 std::size_t packed_triangles(const GltfDocument& document, const Json& json, PrimitiveMode mode) {
     if (mode != PrimitiveMode::kTriangles) json.fail("only lists of triangles are packed by Draco");
@@ -180,6 +191,8 @@ Primitive read_primitive(GltfDocument& document, const Json& json) {
             context.charge(sizeof(MorphTarget), target.place());
             p.targets.push_back(read_target(document, target, p.positions.size()));
         });
+    if (const std::optional<Json> variants = find_extension(json, "KHR_materials_variants"))
+        read_variants(document, *variants, p);
     if (const std::optional<Json> indices = json.find("indices")) read_primitive_indices(source, *indices, p);
     return p;
 }
@@ -188,6 +201,13 @@ Primitive read_primitive(GltfDocument& document, const Json& json) {
 std::uint64_t saturating_sum(std::uint64_t a, std::uint64_t b) {
     constexpr std::uint64_t kMost = std::uint64_t{1} << 62;
     return std::min(std::min(a, kMost) + std::min(b, kMost), kMost);
+}
+
+// Of a mesh without instances there is one.
+std::uint64_t saturating_product(std::uint64_t triangles, std::uint64_t instances) {
+    constexpr std::uint64_t kMost = std::uint64_t{1} << 62;
+    if (instances == 0 || triangles == 0) return std::min(triangles, kMost);
+    return triangles > kMost / instances ? kMost : triangles * instances;
 }
 
 std::uint64_t count_triangles(const GltfDocument& document, const Json& mesh) {
@@ -221,7 +241,8 @@ void check_triangle_limit(GltfDocument& document, const Scene& scene) {
         for (const int child : scene.nodes[order[i]].children) order.push_back(static_cast<std::size_t>(child));
     for (auto i = order.rbegin(); i != order.rend(); ++i) {
         const Node& node = scene.nodes[*i];
-        if (node.mesh != kNone) of_node[*i] = of_mesh[static_cast<std::size_t>(node.mesh)];
+        if (node.mesh != kNone)
+            of_node[*i] = saturating_product(of_mesh[static_cast<std::size_t>(node.mesh)], node.instances.size());
         for (const int child : node.children)
             of_node[*i] = saturating_sum(of_node[*i], of_node[static_cast<std::size_t>(child)]);
     }

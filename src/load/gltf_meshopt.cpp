@@ -12,7 +12,8 @@ void decode(const Json& json, std::string_view mode, Bytes& bytes, std::size_t c
     const auto* const from = reinterpret_cast<const unsigned char*>(packed.data());
     int error = 0;
     if (mode == "ATTRIBUTES") {
-        if (stride % 4 != 0 || stride > 256) json.at("byteStride").fail("attributes are packed in multiples of 4 bytes up to 256");
+        if (stride % 4 != 0 || stride > 256)
+            json.at("byteStride").fail("attributes are packed in multiples of 4 bytes up to 256");
         error = meshopt_decodeVertexBuffer(bytes.data(), count, stride, from, packed.size());
     } else if (mode == "TRIANGLES" || mode == "INDICES") {
         if (stride != 2 && stride != 4) json.at("byteStride").fail("indices have 2 or 4 bytes");

@@ -43,6 +43,40 @@ void read_placement(LoadContext& context, const Json& json, Node& node) {
     }
 }
 
+// EXT_mesh_gpu_instancing: as many instances as its accessors have elements.
+void read_instances(GltfDocument& document, const Json& json, Node& node) {
+    std::size_t count = 0;
+    const auto open = [&](std::string_view name, const Json& value, std::string_view type, unsigned formats) {
+        const int number = value.reference(document.size(GltfArray::kAccessors), "accessor");
+        Accessor accessor = open_accessor(document, static_cast<std::size_t>(number));
+        expect_format(value, accessor, type, formats);
+        if (count != 0 && accessor.count != count)
+            value.fail(std::string(name) + " has " + std::to_string(accessor.count) + " elements, others have " +
+                       std::to_string(count));
+        if (count == 0) {
+            count = accessor.count;
+            document.context().charge(std::uint64_t{count} * sizeof(MeshInstance), value.place());
+            node.instances.resize(count);
+        }
+        return accessor;
+    };
+    json.at("attributes").each_member([&](std::string_view name, const Json& value) {
+        if (name == "TRANSLATION") {
+            const std::vector<Vec3> values = read_floats<Vec3>(document, open(name, value, "VEC3", kFloats));
+            for (std::size_t i = 0; i < count; ++i) node.instances[i].translation = values[i];
+        } else if (name == "SCALE") {
+            const std::vector<Vec3> values = read_floats<Vec3>(document, open(name, value, "VEC3", kFloats));
+            for (std::size_t i = 0; i < count; ++i) node.instances[i].scale = values[i];
+        } else if (name == "ROTATION") {
+            const std::vector<Vec4> values =
+                read_floats<Vec4>(document, open(name, value, "VEC4", kFloats | kNormalizedSigned));
+            for (std::size_t i = 0; i < count; ++i)
+                node.instances[i].rotation = {values[i].x, values[i].y, values[i].z, values[i].w};
+        }  // others are the application's own
+    });
+    if (count == 0) json.fail("instances need TRANSLATION, ROTATION or SCALE");
+}
+
 Node read_node(GltfDocument& document, const Json& json, const std::vector<int>& lights) {
     Node node;
     document.note_extensions(json);
@@ -55,6 +89,8 @@ Node read_node(GltfDocument& document, const Json& json, const std::vector<int>&
     node.camera = json.reference_or_none("camera", document.size(GltfArray::kCameras), "camera");
     node.skin = json.reference_or_none("skin", document.size(GltfArray::kSkins), "skin");
     if (const std::optional<Json> weights = json.find("weights")) node.weights = weights->numbers();
+    if (const std::optional<Json> instancing = find_extension(json, "EXT_mesh_gpu_instancing"))
+        read_instances(document, *instancing, node);
     if (const std::optional<Json> punctual = find_extension(json, "KHR_lights_punctual"))
         node.light = lights[static_cast<std::size_t>(punctual->at("light").reference(lights.size(), "light"))];
     return node;

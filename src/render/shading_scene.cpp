@@ -35,6 +35,13 @@ MaterialView convert(const Material& m) {
     v.base_color[0] = base.x, v.base_color[1] = base.y, v.base_color[2] = base.z, v.base_color[3] = base.w;
     v.metallic = m.metallic;
     v.roughness = m.roughness;
+    const double root = m.ior == 0 ? 1.0 : (static_cast<double>(m.ior) - 1) / (static_cast<double>(m.ior) + 1);
+    const Vec3& tint = m.specular_color;
+    for (int i = 0; i < 3; ++i) {
+        const double colored = root * root * static_cast<double>(i == 0 ? tint.x : i == 1 ? tint.y : tint.z);
+        v.dielectric[i] = static_cast<float>(std::min(colored, 1.0)) * m.specular_strength;
+    }
+    v.dielectric_edge = m.specular_strength;
     v.normal_scale = m.normal_scale;
     v.occlusion_strength = m.occlusion_strength;
     copy3(m.emissive, m.emissive_strength, v.emission);

@@ -35,11 +35,12 @@ void check_light(const Light& light, const Place& place) {
 }
 
 void check_material(const Scene& scene, const Material& m, const Place& place) {
-    const float values[] = {m.base_color.x, m.base_color.y, m.base_color.z, m.base_color.w, m.metallic,
-                            m.roughness,    m.emissive.x,   m.emissive.y,   m.emissive.z,   m.emissive_strength,
-                            m.normal_scale, m.ambient.x,    m.ambient.y,    m.ambient.z,    m.occlusion_strength,
-                            m.diffuse.x,    m.diffuse.y,    m.diffuse.z,    m.specular.x,   m.specular.y,
-                            m.specular.z,   m.shininess,    m.alpha_cutoff};
+    const float values[] = {
+        m.base_color.x,      m.base_color.y,     m.base_color.z,       m.base_color.w,      m.metallic,     m.roughness,
+        m.emissive.x,        m.emissive.y,       m.emissive.z,         m.emissive_strength, m.normal_scale, m.ambient.x,
+        m.ambient.y,         m.ambient.z,        m.occlusion_strength, m.diffuse.x,         m.diffuse.y,    m.diffuse.z,
+        m.specular.x,        m.specular.y,       m.specular.z,         m.shininess,         m.alpha_cutoff, m.ior,
+        m.specular_strength, m.specular_color.x, m.specular_color.y,   m.specular_color.z};
     place.finite(values, std::size(values));
     for (std::size_t s = 0; s < kTextureSlots; ++s) {
         const TextureRef& ref = m.textures[s];

@@ -65,6 +65,8 @@ void check_node(const Scene& scene, const Node& node, const Place& place) {
     place.child("rotation").finite(&node.rotation.x, 4);
     place.child("scale").finite(&node.scale.x, 3);
     place.child("weights").finite(node.weights.data(), node.weights.size());
+    static_assert(sizeof(MeshInstance) == 10 * sizeof(float));
+    place.child("instances").finite(reinterpret_cast<const float*>(node.instances.data()), 10 * node.instances.size());
 }
 
 void check_skins(const Scene& scene) {

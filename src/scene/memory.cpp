@@ -27,7 +27,7 @@ std::uint64_t bytes(const std::vector<std::string>& strings) {
 std::uint64_t bytes(const Primitive& p) {
     std::uint64_t sum = bytes(p.positions) + bytes(p.normals) + bytes(p.tangents) + bytes(p.texcoords) +
                         bytes(p.colors) + bytes(p.joints) + bytes(p.weights) + bytes(p.custom) + bytes(p.targets) +
-                        bytes(p.indices) + bytes(p.extras);
+                        bytes(p.indices) + bytes(p.variants) + bytes(p.extras);
     for (const CustomAttribute& c : p.custom) sum += bytes(c.name) + bytes(c.values);
     for (const MorphTarget& t : p.targets) sum += bytes(t.positions) + bytes(t.normals) + bytes(t.tangents);
     return sum;
@@ -61,8 +61,8 @@ std::uint64_t memory_bytes(const Scene& scene) {
                         named(scene.lights) + named(scene.skins) + bytes(scene.animations) + named(scene.scenes) +
                         bytes(scene.generator) + bytes(scene.copyright) + bytes(scene.extras) +
                         bytes(scene.extensions_used) + bytes(scene.extensions_required) +
-                        bytes(scene.extensions_ignored) + bytes(scene.warnings);
-    for (const Node& node : scene.nodes) sum += bytes(node.children) + bytes(node.weights);
+                        bytes(scene.extensions_ignored) + bytes(scene.variants) + bytes(scene.warnings);
+    for (const Node& node : scene.nodes) sum += bytes(node.children) + bytes(node.weights) + bytes(node.instances);
     for (const Mesh& mesh : scene.meshes) sum += bytes(mesh);
     for (const Sampler& sampler : scene.samplers) sum += bytes(sampler.name);
     for (const Skin& skin : scene.skins) sum += bytes(skin.joints) + bytes(skin.inverse_bind);

@@ -81,10 +81,6 @@ struct MetallicRoughnessLobe {
     static constexpr float kSmallestRoughness = 0.03f;
 
     template <class F>
-    static TESSERA_INLINE Vec3T<F> f0(const LobeParameters<F>& p) {
-        return mix(Vec3T<F>::splat(F(0.04f)), p.base, p.metallic);
-    }
-    template <class F>
     static TESSERA_INLINE Vec3T<F> diffuse_color(const LobeParameters<F>& p) {
         return p.base * (F(1.0f) - p.metallic);
     }
@@ -115,8 +111,7 @@ struct MetallicRoughnessLobe {
         const F rough = max(p.roughness, F(kSmallestRoughness));
         const F a = rough * rough, a2 = a * a;
 
-        const Vec3T<F> base = f0(p);
-        const Vec3T<F> fresnel = schlick(base, Vec3T<F>::splat(F(1.0f)), v_h);
+        const Vec3T<F> fresnel = schlick(p.f0, Vec3T<F>::splat(p.f90), v_h);
 
         // 1 - (n.h)^2 + a2 (n.h)^2, its sine taken from the cross product: near the peak of a smooth
         // surface's highlight the difference would cancel.
@@ -126,7 +121,7 @@ struct MetallicRoughnessLobe {
         const F smith = n_l * sqrt(n_v * n_v * (F(1.0f) - a2) + a2) + n_v * sqrt(n_l * n_l * (F(1.0f) - a2) + a2);
         const F specular = distribution * F(0.5f) / max(smith, F(1e-30f));
 
-        const Vec3T<F> diffuse = into_base(base, rough, saturate(min(n_l, n_v))) * diffuse_color(p) * F(kInversePi);
+        const Vec3T<F> diffuse = into_base(p.f0, rough, saturate(min(n_l, n_v))) * diffuse_color(p) * F(kInversePi);
         return (diffuse + fresnel * specular) * n_l;
     }
 
@@ -139,7 +134,7 @@ struct MetallicRoughnessLobe {
         const F a004 = min(rx * rx, math::exp2(F(-9.28f) * n_v)) * rx + ry;
         const F scale = F(1.04f) - F(0.572f) * p.roughness - F(1.04f) * a004;
         const F bias = F(0.022f) * p.roughness - F(0.04f) + F(1.04f) * a004;
-        const Vec3T<F> fit = f0(p) * scale + Vec3T<F>::splat(max(bias, F(0.0f)));
+        const Vec3T<F> fit = p.f0 * scale + Vec3T<F>::splat(max(bias, F(0.0f)) * p.f90);
         const Vec3T<F> albedo{min(fit.x, F(1.0f)), min(fit.y, F(1.0f)), min(fit.z, F(1.0f))};
         const Vec3T<F> mirrored = p.normal * (F(2.0f) * p.n_v) - p.view;
         return albedo * ambient_radiance(ambient, mirrored, p.roughness) +

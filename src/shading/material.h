@@ -24,8 +24,9 @@ struct MaterialView {
     float alpha_cutoff;
     float base_color[4];
     float metallic, roughness, normal_scale, occlusion_strength;
-    float emission[3];                          // strength included
-    float ambient[3], diffuse[3], specular[3];  // ka, kd, ks
+    float dielectric[3] = {0.04f, 0.04f, 0.04f}, dielectric_edge = 1;  // reflectance of no metal, ahead and grazing
+    float emission[3];                                                 // strength included
+    float ambient[3], diffuse[3], specular[3];                         // ka, kd, ks
     float shininess;
     TextureInput inputs[kTextureSlots];
 
@@ -100,6 +101,8 @@ struct LobeParameters {
     Vec3T<F> normal, view;  // unit; the view direction points to the eye
     F n_v;                  // their cosine, not clamped
     Vec3T<F> base, emission;
+    Vec3T<F> f0;  // reflectance at normal incidence
+    F f90;        // and at a grazing angle
     F alpha, metallic, roughness, occlusion;
 };
 
@@ -115,6 +118,8 @@ TESSERA_INLINE LobeParameters<F> evaluate_material(const MaterialView& m, const 
     p.alpha = coverage_of_alpha(m, base.w);
     p.metallic = saturate(F(m.metallic) * mr.z);
     p.roughness = saturate(F(m.roughness) * mr.y);
+    p.f0 = mix(Vec3T<F>::load(m.dielectric), p.base, p.metallic);
+    p.f90 = F(m.dielectric_edge) + (F(1.0f) - F(m.dielectric_edge)) * p.metallic;
     p.emission = Vec3T<F>::load(m.emission) * read_input<kUvSets>(m, TextureSlot::kEmissive, s).xyz();
     p.occlusion = kUvSets > 0 ? occlusion<kUvSets>(m, s) : F(1.0f);
     return p;

@@ -26,6 +26,8 @@ LobeParameters<float> parameters(const Vec3T<float>& normal, const Vec3T<float>&
     p.base = base;
     p.metallic = metallic;
     p.roughness = roughness;
+    p.f0 = mix(Vec3T<float>::splat(0.04f), base, metallic);
+    p.f90 = 1;
     return p;
 }
 
