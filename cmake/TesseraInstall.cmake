@@ -10,9 +10,9 @@ set(TESSERA_PC_REQUIRES_PRIVATE "")
 set(TESSERA_PC_LIBS_PRIVATE "")
 if(NOT BUILD_SHARED_LIBS)
   set(TESSERA_STATIC ON)
-  set(static_libraries PNG::PNG ZLIB::ZLIB JPEG::JPEG simdjson::simdjson PkgConfig::LIBDEFLATE PkgConfig::DRACO
+  set(static_libraries PNG::PNG ZLIB::ZLIB JPEG::JPEG simdjson::simdjson PkgConfig::LIBDEFLATE PkgConfig::DRACO PkgConfig::MINIZIP
     meshoptimizer::meshoptimizer Threads::Threads)
-  set(TESSERA_PC_REQUIRES_PRIVATE "libpng zlib libjpeg libdeflate simdjson draco")
+  set(TESSERA_PC_REQUIRES_PRIVATE "libpng zlib libjpeg libdeflate simdjson draco minizip")
   set(TESSERA_PC_LIBS_PRIVATE "-lmeshoptimizer -pthread -lstdc++ -lm")
   if(TESSERA_THREADS STREQUAL "tbb")
     list(APPEND static_libraries TBB::tbb)

@@ -1,5 +1,5 @@
 // Loading scene files: glTF 2.0 (.gltf with its buffers and pictures, .glb), Wavefront OBJ with MTL, PLY and
-// STL. The format is told by
+// STL, and ZIP archives with one of them. The format is told by
 // content first and by extension second. A file is hostile until checked: every count, range and
 // reference is verified before memory is taken, only files below the scene's folder are opened, and
 // a fault throws tessera::Error (kInput, or kLimit when a limit is exceeded) naming file and place.

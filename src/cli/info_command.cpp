@@ -30,7 +30,7 @@ int run(const InfoArguments& arguments) {
 Command add_info_command(CLI::App& application) {
     CLI::App* app = application.add_subcommand("info", "Say what is in a scene file");
     auto arguments = std::make_shared<InfoArguments>();
-    app->add_option("scene", arguments->scene, "scene file (.gltf, .glb, .obj, .ply, .stl), or - for stdin")
+    app->add_option("scene", arguments->scene, "scene file (.gltf, .glb, .obj, .ply, .stl, .zip), or - for stdin")
         ->required()
         ->option_text("");
     app->add_flag("--json", arguments->json, "report as JSON");

@@ -127,7 +127,7 @@ void add_render_options(CLI::App& app, RenderArguments& a) {
     };
 
     option("Input and output", "scene", a.scene, "",
-           "scene file (.gltf, .glb, .obj, .ply, .stl), or - to read it from stdin")
+           "scene file (.gltf, .glb, .obj, .ply, .stl, .zip), or - to read it from stdin")
         ->required();
     option("Input and output", "-o,--output", a.output, "FILE",
            "picture to write: .png, .jpg or .jpeg; - streams PNG to stdout");

@@ -17,6 +17,8 @@ class LoadContext {
     LoadContext(std::string file, const LoadOptions& options) : file_(std::move(file)), options_(options) {}
 
     const std::string& file() const { return file_; }
+    // From here on the file is one inside the one before.
+    void enter(const std::string& name) { file_ += "/" + name; }
     const LoadOptions& options() const { return options_; }
     const std::vector<std::string>& warnings() const { return warnings_; }
 

@@ -20,8 +20,8 @@ void check_input(const LoadContext& context, Check&& check) {
 }  // namespace
 
 Scene read_gltf(LoadContext& context, std::string_view json, std::optional<std::span<const std::byte>> binary,
-                const std::string& folder) {
-    GltfDocument document(context, json, binary, folder);
+                const SceneFiles& files) {
+    GltfDocument document(context, json, binary, files);
     Scene scene;
     read_header(document, scene);
     make_room(document, GltfArray::kMeshes, scene.meshes);

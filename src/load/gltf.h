@@ -2,6 +2,7 @@
 #pragma once
 
 #include "load/context.h"
+#include "load/scene_files.h"
 
 #include <tessera/scene.h>
 
@@ -13,9 +14,9 @@
 
 namespace tessera {
 
-// `binary`: the BIN chunk of a GLB. `folder`: where relative URIs live, "" for nowhere. The scene is
+// `binary`: the BIN chunk of a GLB. `files`: where relative URIs lead. The scene is
 // valid (tessera::validate) when it is returned.
 Scene read_gltf(LoadContext& context, std::string_view json, std::optional<std::span<const std::byte>> binary,
-                const std::string& folder);
+                const SceneFiles& files);
 
 }  // namespace tessera

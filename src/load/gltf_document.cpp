@@ -47,8 +47,8 @@ std::optional<Json> find_extension(const Json& object, std::string_view name) {
 }
 
 GltfDocument::GltfDocument(LoadContext& context, std::string_view json,
-                           std::optional<std::span<const std::byte>> binary, std::string folder)
-    : context_(context), binary_(binary), folder_(std::move(folder)) {
+                           std::optional<std::span<const std::byte>> binary, const SceneFiles& files)
+    : context_(context), binary_(binary), files_(files) {
     parse(json);
     check_asset();
     for (std::size_t i = 0; i < kArrayNames.size(); ++i)
@@ -98,8 +98,11 @@ Json GltfDocument::item(GltfArray array, std::size_t index) const {
 
 Bytes GltfDocument::read_uri(const Json& uri) {
     if (is_data_uri(uri.string())) return decode_data_uri(context_, uri.string(), uri.place());
-    const FileHandle file = open_below(context_, folder_, uri.string(), uri.place());
-    return read_open_file(context_, file, UINT64_MAX, uri.place());
+    return read_file(uri, UINT64_MAX);
+}
+
+Bytes GltfDocument::read_file(const Json& uri, std::uint64_t most) {
+    return files_.read(context_, checked_path(context_, uri.string(), uri.place()), most, uri.place());
 }
 
 std::span<const std::byte> GltfDocument::buffer(std::size_t index) {
@@ -112,8 +115,7 @@ std::span<const std::byte> GltfDocument::buffer(std::size_t index) {
         if (is_data_uri(uri->string())) {
             buffer.owned = decode_data_uri(context_, uri->string(), uri->place());
         } else {
-            const FileHandle file = open_below(context_, folder_, uri->string(), uri->place());
-            buffer.owned = read_open_file(context_, file, length, uri->place());
+            buffer.owned = read_file(*uri, length);
         }
         buffer.bytes = buffer.owned.span();
     } else if (index == 0 && binary_) {

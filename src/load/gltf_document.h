@@ -6,6 +6,7 @@
 #include "load/context.h"
 #include "load/file.h"
 #include "load/json.h"
+#include "load/scene_files.h"
 
 #include <array>
 #include <cstddef>
@@ -41,10 +42,10 @@ struct BufferView {
 
 class GltfDocument {
   public:
-    // `binary` is the BIN chunk of a GLB; `folder` is where relative URIs live ("": nowhere). Throws
+    // `binary` is the BIN chunk of a GLB; `files` is where relative URIs lead; it outlives this. Throws
     // kInput unless the text is JSON and a glTF 2 asset.
     GltfDocument(LoadContext& context, std::string_view json, std::optional<std::span<const std::byte>> binary,
-                 std::string folder);
+                 const SceneFiles& files);
 
     LoadContext& context() { return context_; }
     Json root() const { return Json(root_, JsonPath(), context_.file()); }
@@ -72,12 +73,13 @@ class GltfDocument {
     void check_asset() const;
     void check_references() const;
     std::span<const std::byte> buffer(std::size_t index);
+    Bytes read_file(const Json& uri, std::uint64_t most);
     // The bytes that "buffer", "byteOffset" and "byteLength" of an object name.
     std::span<const std::byte> part_of_buffer(const Json& json);
 
     LoadContext& context_;
     std::optional<std::span<const std::byte>> binary_;
-    std::string folder_;
+    const SceneFiles& files_;
     simdjson::dom::parser parser_;
     simdjson::dom::element root_;
     std::array<std::vector<simdjson::dom::element>, static_cast<std::size_t>(GltfArray::kCount)> arrays_;

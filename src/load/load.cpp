@@ -9,6 +9,7 @@
 #include "load/obj_text.h"
 #include "load/ply.h"
 #include "load/stl.h"
+#include "load/zip.h"
 
 #include <new>
 #include <stdexcept>
@@ -34,23 +35,32 @@ bool has_extension(std::string_view name, std::string_view extension) {
 }
 
 // By content first; OBJ and ASCII STL have no mark of their own, so there the extension comes first.
-Scene read_any(LoadContext& context, std::span<const std::byte> file, const std::string& folder) {
+Scene read_plain(LoadContext& context, std::span<const std::byte> file, const SceneFiles& files) {
     const std::string_view text(reinterpret_cast<const char*>(file.data()), file.size());
     if (is_glb(file)) {
         const GlbChunks chunks = split_glb(context, file);
-        return read_gltf(context, chunks.json, chunks.binary, folder);
+        return read_gltf(context, chunks.json, chunks.binary, files);
     }
     if (is_ply(file)) return read_ply(context, file);
-    if (has_extension(context.file(), ".obj")) return read_obj(context, text, folder);
+    if (has_extension(context.file(), ".obj")) return read_obj(context, text, files);
     if (file.empty()) context.fail("the file is empty");
     if (has_extension(context.file(), ".stl") || is_binary_stl(file)) return read_stl(context, file);
-    if (looks_like_json(text)) return read_gltf(context, text, std::nullopt, folder);
+    if (looks_like_json(text)) return read_gltf(context, text, std::nullopt, files);
     if (has_extension(context.file(), ".gltf")) context.fail("not a glTF file: it does not begin with \"{\"");
     if (has_extension(context.file(), ".glb")) context.fail("not a GLB file: it does not begin with \"glTF\"");
     if (has_extension(context.file(), ".ply")) context.fail("not a PLY file: it does not begin with \"ply\"");
     if (is_ascii_stl(file)) return read_stl(context, file);
-    if (looks_like_obj(text)) return read_obj(context, text, folder);
-    context.fail("not a scene format that Tessera reads (glTF 2.0: .gltf, .glb; .obj; .ply; .stl)");
+    if (looks_like_obj(text)) return read_obj(context, text, files);
+    context.fail("not a scene format that Tessera reads (glTF 2.0: .gltf, .glb; .obj; .ply; .stl; .zip of one)");
+}
+
+// An archive is read as the scene in it.
+Scene read_any(LoadContext& context, std::span<const std::byte> file, const std::string& folder) {
+    if (!is_zip(file)) return read_plain(context, file, FolderFiles(folder));
+    const ZipFiles archive(context, file);
+    const Bytes scene = archive.read_scene(context);
+    context.enter(archive.scene());
+    return read_plain(context, scene.span(), archive);
 }
 
 // Memory that runs out below the configured limit is a limit too.

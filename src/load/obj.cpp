@@ -225,10 +225,10 @@ class ObjBuilder {
 
 }  // namespace
 
-Scene read_obj(LoadContext& context, std::string_view text, const std::string& folder) {
+Scene read_obj(LoadContext& context, std::string_view text, const SceneFiles& files) {
     Scene scene;
     ObjText parsed = read_obj_text(context, text);
-    ObjMaterials materials(context, folder, scene);
+    ObjMaterials materials(context, files, scene);
     for (const std::string& library : parsed.libraries) materials.read_library(library);
     std::vector<char> used(parsed.materials.size() + 1, 0);
     for (const ObjPart& part : parsed.parts) used[at(part.material + 1)] = 1;

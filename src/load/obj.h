@@ -5,16 +5,16 @@
 #pragma once
 
 #include "load/context.h"
+#include "load/scene_files.h"
 
 #include <tessera/scene.h>
 
-#include <string>
 #include <string_view>
 
 namespace tessera {
 
-// `folder`: where libraries and textures lie, "" for nowhere. Throws kInput for damaged geometry; damaged or
+// `files`: where libraries and textures lie. Throws kInput for damaged geometry; damaged or
 // missing materials and textures are warnings.
-Scene read_obj(LoadContext& context, std::string_view text, const std::string& folder);
+Scene read_obj(LoadContext& context, std::string_view text, const SceneFiles& files);
 
 }  // namespace tessera

@@ -2,7 +2,6 @@
 
 #include "load/mesh_scene.h"
 #include "load/text.h"
-#include "load/uri.h"
 
 #include <algorithm>
 #include <memory>
@@ -46,8 +45,8 @@ bool has_alpha(const Image& image) {
 
 }  // namespace
 
-ObjMaterials::ObjMaterials(LoadContext& context, std::string folder, Scene& scene)
-    : context_(context), folder_(std::move(folder)), scene_(scene) {}
+ObjMaterials::ObjMaterials(LoadContext& context, const SceneFiles& files, Scene& scene)
+    : context_(context), files_(files), scene_(scene) {}
 
 void ObjMaterials::warn_once(const std::string& what) {
     if (warned_.size() < 64 && warned_.insert(what).second) context_.warn(what);
@@ -72,8 +71,7 @@ void ObjMaterials::read_library(const std::string& name) {
     std::string path = name;
     std::replace(path.begin(), path.end(), '\\', '/');
     try {
-        Bytes bytes =
-            read_open_file(context_, open_path_below(context_, folder_, path, "mtllib"), UINT64_MAX, "mtllib");
+        Bytes bytes = files_.read(context_, path, UINT64_MAX, "mtllib");
         const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
         for (const MtlMaterial& m : read_mtl_text(context_, text, path.substr(0, 60)))
             if (!materials_.contains(m.name)) materials_[m.name] = add_material(m);
@@ -181,11 +179,11 @@ int ObjMaterials::picture(const MtlTexture& t) {
     const auto open = [&]() -> Bytes {
         if (!context_.options().load_pictures) return {};
         try {
-            return read_open_file(context_, open_path_below(context_, folder_, t.file, place), UINT64_MAX, place);
+            return files_.read(context_, t.file, UINT64_MAX, place);
         } catch (const Error& error) {
             const std::string name = base_name(t.file);
             if (error.code() != ErrorCode::kInput || name == t.file || name.empty()) throw;
-            return read_open_file(context_, open_path_below(context_, folder_, name, place), UINT64_MAX, place);
+            return files_.read(context_, name, UINT64_MAX, place);
         }
     };
     try {
@@ -196,7 +194,7 @@ int ObjMaterials::picture(const MtlTexture& t) {
         Picture entry;
         entry.uri = t.file;
         scene_.pictures.push_back(std::move(entry));
-        if (context_.options().load_pictures) files_.push_back(std::move(file));
+        if (context_.options().load_pictures) picture_files_.push_back(std::move(file));
     } catch (const Error& error) {
         if (error.code() != ErrorCode::kInput) throw;
         context_.warn(place + ": " + error.message());
@@ -263,7 +261,7 @@ void ObjMaterials::choose_alpha_mode(Material& material) {
 }
 
 void ObjMaterials::finish() {
-    decode_pictures(context_, std::move(files_), scene_, PictureFaults::kWarn);
+    decode_pictures(context_, std::move(picture_files_), scene_, PictureFaults::kWarn);
     for (const Part& part : parts_) combine(part);
     for (const int number : masked_) choose_alpha_mode(scene_.materials[static_cast<std::size_t>(number)]);
     // What was only part of others is let go.

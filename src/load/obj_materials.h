@@ -6,6 +6,7 @@
 #include "load/context.h"
 #include "load/mtl.h"
 #include "load/pictures.h"
+#include "load/scene_files.h"
 
 #include <tessera/scene.h>
 
@@ -19,8 +20,8 @@ namespace tessera {
 
 class ObjMaterials {
   public:
-    // `folder`: where libraries and pictures lie.
-    ObjMaterials(LoadContext& context, std::string folder, Scene& scene);
+    // `files`: where libraries and pictures lie; it outlives this.
+    ObjMaterials(LoadContext& context, const SceneFiles& files, Scene& scene);
 
     void read_library(const std::string& name);
     // The scene's material of that name, or the plain one, with a warning for names that are not known.
@@ -50,13 +51,13 @@ class ObjMaterials {
     void warn_once(const std::string& what);
 
     LoadContext& context_;
-    std::string folder_;
+    const SceneFiles& files_;
     Scene& scene_;
     int plain_ = kNone;
     std::map<std::string, int> materials_;
     std::map<std::string, int> pictures_;
     std::map<std::pair<int, bool>, int> textures_;  // by picture and clamping
-    std::vector<PictureFile> files_;
+    std::vector<PictureFile> picture_files_;
     std::vector<Part> parts_;
     std::vector<int> masked_;  // materials whose alpha decides how they are drawn
     std::set<std::string> warned_;

@@ -78,15 +78,6 @@ void check_path(const LoadContext& context, std::string_view path, const std::st
         if (part == "..") context.fail("\"" + shown + "\": leaves the scene's folder", place);
 }
 
-// The path that a URI says.
-std::string checked_path(const LoadContext& context, std::string_view uri, const std::string& place) {
-    const std::string shown(uri.substr(0, 200));
-    if (has_scheme(uri)) context.fail("\"" + shown + "\": only relative and data: URIs are read", place);
-    std::string path = percent_decode(context, uri, place);
-    check_path(context, path, shown, place);
-    return path;
-}
-
 }  // namespace
 
 bool is_data_uri(std::string_view uri) { return same_ignoring_case(uri.substr(0, 5), "data:"); }
@@ -127,6 +118,21 @@ Bytes decode_data_uri(LoadContext& context, std::string_view uri, const std::str
     Bytes bytes(decoded.size());
     std::copy_n(reinterpret_cast<const std::byte*>(decoded.data()), decoded.size(), bytes.data());
     return bytes;
+}
+
+std::string checked_path(const LoadContext& context, std::string_view uri, const std::string& place) {
+    const std::string shown(uri.substr(0, 200));
+    if (has_scheme(uri)) context.fail("\"" + shown + "\": only relative and data: URIs are read", place);
+    std::string path = percent_decode(context, uri, place);
+    check_path(context, path, shown, place);
+    return path;
+}
+
+std::string normal_path(const LoadContext& context, const std::string& path, const std::string& place) {
+    check_path(context, path, path.substr(0, 200), place);
+    std::string joined;
+    for (const std::string& part : components_of(path)) joined += (joined.empty() ? "" : "/") + part;
+    return joined;
 }
 
 FileHandle open_below(const LoadContext& context, const std::string& folder, std::string_view uri,

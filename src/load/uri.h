@@ -23,7 +23,12 @@ std::string percent_decode(const LoadContext& context, std::string_view text, co
 FileHandle open_below(const LoadContext& context, const std::string& folder, std::string_view uri,
                       const std::string& place);
 
-// The same for a plain path, in which nothing is escaped.
+// The relative path that a URI says, after the rules that need no file system.
+std::string checked_path(const LoadContext& context, std::string_view uri, const std::string& place);
+// A relative path without "." and empty parts, by the same rules.
+std::string normal_path(const LoadContext& context, const std::string& path, const std::string& place);
+
+// The same as open_below() for a plain path, in which nothing is escaped.
 FileHandle open_path_below(const LoadContext& context, const std::string& folder, const std::string& path,
                            const std::string& place);
 
