@@ -61,7 +61,7 @@ struct Primitive {
     std::vector<CustomAttribute> custom;
     std::vector<MorphTarget> targets;
     std::vector<std::uint32_t> indices;     // empty: 0, 1, 2, ...
-    std::vector<VariantMaterial> variants;  // where they differ from `material`
+    std::vector<VariantMaterial> variants;  // where they differ from `material`; kNone as variant: the default
     std::string extras;
 };
 

@@ -26,6 +26,14 @@ void Deadline::disarm() {
     if (watcher_.joinable()) watcher_.join();
 }
 
+void Deadline::hold(bool writing) {
+    {
+        const std::lock_guard lock(mutex_);
+        writing_ = writing;
+    }
+    changed_.notify_all();
+}
+
 std::string Deadline::message() const {
     char time[32];
     std::snprintf(time, sizeof time, "%g", seconds_);
@@ -39,6 +47,8 @@ void Deadline::watch() {
     expired_ = true;
     constexpr auto kGrace = std::chrono::seconds(2);
     if (grace_ && changed_.wait_for(lock, kGrace, finished)) return;
+    changed_.wait(lock, [this] { return done_ || !writing_; });
+    if (done_) return;
     report_error(message());
     ::_exit(kLimitReached);
 }

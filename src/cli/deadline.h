@@ -25,6 +25,8 @@ class Deadline {
     // From now on the work asks expired() and stops by itself.
     void allow_grace() { grace_ = true; }
     void disarm();
+    // While something is written the process is not ended; the work is told of the end afterwards.
+    void hold(bool writing);
     // The one line that is printed when the time is up.
     std::string message() const;
 
@@ -34,7 +36,7 @@ class Deadline {
     double seconds_ = 0;
     std::string file_;
     std::atomic<bool> expired_{false}, grace_{false};
-    bool done_ = false;
+    bool done_ = false, writing_ = false;
     std::mutex mutex_;
     std::condition_variable changed_;
     std::thread watcher_;

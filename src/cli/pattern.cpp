@@ -21,7 +21,16 @@ std::string padded(const std::string& option, long number, const std::string& wi
 }  // namespace
 
 bool has_place(const std::string& pattern, const std::string& name) {
-    return pattern.find("{" + name + "}") != std::string::npos || pattern.find("{" + name + ":") != std::string::npos;
+    for (std::size_t i = 0; i < pattern.size(); ++i) {
+        if (pattern[i] != '{') continue;
+        if (pattern.compare(i, 2, "{{") == 0) {
+            ++i;
+        } else if (pattern.compare(i + 1, name.size(), name) == 0) {
+            const std::size_t end = i + 1 + name.size();
+            if (end < pattern.size() && (pattern[end] == '}' || pattern[end] == ':')) return true;
+        }
+    }
+    return false;
 }
 
 std::string fill_pattern(const std::string& option, const std::string& pattern, const PatternValues& values) {

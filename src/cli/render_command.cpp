@@ -129,6 +129,8 @@ class Sequence {
                 renderer->draw(job_.render.view, moment, result);
             });
             if (drawn_ + 1 == pictures()) deadline.disarm();
+            bar_.clear();
+            deadline.hold(true);
             result.warnings.insert(result.warnings.begin(), scene_.warnings.begin(), scene_.warnings.end());
             if (!arguments_.quiet && !reported_) report_warnings(input_name(arguments_.scene), result.warnings);
             reported_ = true;
@@ -137,7 +139,9 @@ class Sequence {
             times.total_ms = total.milliseconds();
             if (!arguments_.stats.empty())
                 statistics_.push_back(statistics_json(input_name(arguments_.scene), job_.render, result, times));
+            deadline.hold(false);
         }
+        deadline.disarm();
     }
 
     // One object, or with --frames a list of them.

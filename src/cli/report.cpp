@@ -65,8 +65,11 @@ void report_stage(const RenderOptions& options, const RenderResult& result) {
 
 ProgressBar::ProgressBar(bool enabled) : active_(enabled && isatty(STDERR_FILENO) != 0) {}
 
-ProgressBar::~ProgressBar() {
+ProgressBar::~ProgressBar() { clear(); }
+
+void ProgressBar::clear() {
     if (active_ && shown_percent_ >= 0) std::fputs("\r\033[K", stderr);
+    shown_percent_ = -1;
 }
 
 void ProgressBar::show(double fraction) {

@@ -31,6 +31,8 @@ class ProgressBar {
     bool active() const { return active_; }
     // `fraction` in [0, 1].
     void show(double fraction);
+    // Takes it off its line, for other text.
+    void clear();
 
   private:
     bool active_;

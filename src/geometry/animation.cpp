@@ -52,7 +52,8 @@ Placement placement_of(const Node& n) {
 
 std::size_t morph_target_count(const Mesh& mesh) {
     std::size_t count = 0;
-    for (const Primitive& p : mesh.primitives) count = std::max(count, p.targets.size());
+    for (const Primitive& p : mesh.primitives)
+        if (!p.positions.empty()) count = std::max(count, p.targets.size());
     return count;
 }
 

@@ -106,10 +106,11 @@ bool DeformedMesh::update(std::span<const float> weights, const JointMatrices* j
     const std::span<const float> rows = joints ? std::span<const float>(joints->rows) : std::span<const float>();
     if (made_ && same_bits(weights, weights_) && same_bits(rows, rows_)) return false;
     const FpEnvironment exact;
-    if (!made_ || !same_bits(weights, weights_)) morph(weights);
+    const bool same_shape = made_ && same_bits(weights, weights_);
+    made_ = false;  // until all of it is done
+    if (!same_shape) morph(weights);
     weights_.assign(weights.begin(), weights.end());
     rows_.assign(rows.begin(), rows.end());
-    made_ = true;
     if (joints) {
         skin(*joints, isa, arena);
     } else {
@@ -118,7 +119,10 @@ bool DeformedMesh::update(std::span<const float> weights, const JointMatrices* j
         mesh_.made.tangents = tangents_;
     }
     if (flat_) compute_flat_normals(mesh_.made.positions, mesh_.made.normals);
+    if (flat_ && joints && joints->mirrored)
+        for (Vec3& n : mesh_.made.normals) n = -n;  // what goes the other way round is the front
     mesh_.measure();
+    made_ = true;
     return true;
 }
 

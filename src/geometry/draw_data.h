@@ -29,7 +29,8 @@ struct InstanceView {
     float object_to_clip[16];    // rows
     float object_to_camera[12];  // 3x4 rows
     float normal_to_camera[9];   // rows; inverse transpose of the linear part
-    float handedness;            // -1 where object_to_camera mirrors, else 1
+    float handedness;            // -1 where object_to_camera or the skin mirrors, else 1
+    float skin_side = 1;         // -1 where the skin mirrors: its vertices go the other way round
     std::uint32_t first_triangle;
     std::uint32_t material;  // index into the shading materials
     std::uint32_t node;      // index into Scene::nodes

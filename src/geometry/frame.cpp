@@ -30,6 +30,7 @@ InstanceView instance_at(const PreparedNode& node, const glm::dmat4& node_to_cam
     for (int r = 0; r < 3; ++r)
         for (int c = 0; c < 3; ++c) instance.normal_to_camera[3 * r + c] = static_cast<float>(normals[c][r]);
     instance.handedness = (determinant_sign(node_to_camera) < 0) != node.mirrored ? -1.0f : 1.0f;
+    instance.skin_side = node.mirrored ? -1.0f : 1.0f;
     instance.node = static_cast<std::uint32_t>(node.node);
     return instance;
 }

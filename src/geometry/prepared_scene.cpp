@@ -49,10 +49,10 @@ void PreparedScene::move_to(const Moment& moment) {
     Pose pose = pose_of(scene_, moment);
     // Of cameras only those stay that frame all of the same animation.
     if (chosen_ && (chosen_->framed == kUnframed || chosen_->framed != moment.animation)) chosen_.reset();
-    moment_ = moment;
     weights_ = std::move(pose.weights);
     transforms_ = node_transforms(scene_, pose.local);
     place_nodes();
+    moment_ = moment;
 }
 
 // Duplicates are sought anew at every moment: what stands at one place now may part later.
@@ -65,13 +65,18 @@ void PreparedScene::place_nodes() {
         const Node& node = scene_.nodes[static_cast<std::size_t>(index)];
         const glm::dmat4& world = transforms_.world[static_cast<std::size_t>(index)];
         skinned.clear();
-        // Instances are nodes of their own as far as drawing goes; the first carries the light.
-        const std::size_t copies = node.mesh == kNone || node.instances.empty() ? 1 : node.instances.size();
+        // Instances are nodes of their own as far as drawing goes; a light stays at the node.
+        const bool instanced = node.mesh != kNone && !node.instances.empty();
+        if (instanced && node.light != kNone) {
+            const auto end = static_cast<std::uint32_t>(placements_.size());
+            nodes_.push_back({index, node.light, false, false, end, end, world});
+        }
+        const std::size_t copies = instanced ? node.instances.size() : 1;
         for (std::size_t copy = 0; copy < copies; ++copy) {
             const auto first = static_cast<std::uint32_t>(placements_.size());
-            PreparedNode prepared{index, copy == 0 ? node.light : kNone, node.mesh != kNone, false, first, first,
+            PreparedNode prepared{index, instanced ? kNone : node.light, node.mesh != kNone, false, first, first,
                                   world};
-            if (!node.instances.empty()) prepared.world = world * instance_matrix(node.instances[copy]);
+            if (instanced) prepared.world = world * instance_matrix(node.instances[copy]);
             if (prepared.has_mesh)
                 for (const Primitive& p : scene_.meshes[static_cast<std::size_t>(node.mesh)].primitives) {
                     if (!is_drawn(p.mode)) {
@@ -139,10 +144,10 @@ const PlacedCamera& PreparedScene::camera(const View& view, double aspect) {
     return chosen_->camera;
 }
 
-// At equal steps through the animation that is chosen, if any; then back.
+// At equal steps through the animation that is chosen, wherever in it we are, so that every picture of it is framed
+// alike; then back. Without an animation: as it stands.
 void PreparedScene::visit_animation(const PointVisitor& visit) {
-    visit_points(visit);
-    if (moment_.animation == kNone) return;
+    if (moment_.animation == kNone) return visit_points(visit);
     double end = 0;
     for (std::size_t i = 0; i < scene_.animations.size(); ++i)
         if (moment_.animation == kEveryAnimation || moment_.animation == static_cast<int>(i))

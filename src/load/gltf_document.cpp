@@ -55,12 +55,9 @@ GltfDocument::GltfDocument(LoadContext& context, std::string_view json,
         if (const std::optional<Json> array = root().find(kArrayNames[i])) arrays_[i] = array->elements();
     buffers_.resize(size(GltfArray::kBuffers));
     unpacked_.resize(size(GltfArray::kBufferViews));
+    if (const std::optional<Json> extension = find_extension(root(), "KHR_materials_variants"))
+        variant_count_ = extension->at("variants").elements().size();
     check_references();
-}
-
-std::size_t GltfDocument::variant_count() const {
-    const std::optional<Json> extension = find_extension(root(), "KHR_materials_variants");
-    return extension ? extension->at("variants").elements().size() : 0;
 }
 
 void GltfDocument::parse(std::string_view json) {

@@ -50,7 +50,7 @@ class GltfDocument {
     LoadContext& context() { return context_; }
     Json root() const { return Json(root_, JsonPath(), context_.file()); }
     // Of KHR_materials_variants.
-    std::size_t variant_count() const;
+    std::size_t variant_count() const { return variant_count_; }
     std::size_t size(GltfArray array) const { return arrays_[static_cast<std::size_t>(array)].size(); }
     Json item(GltfArray array, std::size_t index) const;
     template <class F>
@@ -90,6 +90,7 @@ class GltfDocument {
         std::span<const std::byte> bytes;
     };
     std::vector<Buffer> buffers_;
+    std::size_t variant_count_ = 0;
     std::vector<Bytes> unpacked_;  // views that were compressed
     std::vector<std::string> ignored_;
 };

@@ -141,6 +141,7 @@ void DracoPrimitive::supply(std::string_view attribute, Accessor& accessor) {
             break;
     }
     if (!fine) json_.at("attributes").fail("the packed attribute does not fit its accessor");
+    if (!accessor.sparse_indices.empty()) json_.fail("packed attributes are not sparse");
     accessor.base = {out, stride, stride};
 }
 
@@ -148,6 +149,7 @@ void DracoPrimitive::supply_indices(Accessor& accessor) const {
     if (accessor.count != indices_.size())
         json_.fail(std::to_string(indices_.size()) + " indices are packed, the accessor has " +
                    std::to_string(accessor.count));
+    if (!accessor.sparse_indices.empty()) json_.fail("packed indices are not sparse");
     accessor.component = ComponentType::kUnsignedInt;
     accessor.base = {reinterpret_cast<const std::byte*>(indices_.data()), sizeof(std::uint32_t), sizeof(std::uint32_t)};
 }

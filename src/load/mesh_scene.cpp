@@ -14,6 +14,13 @@ Material plain_material() {
     return material;
 }
 
+void charge_polygon(LoadContext& context, std::size_t corners, std::size_t& largest) {
+    constexpr std::uint64_t kBytesPerCorner = 64;
+    if (corners <= largest) return;
+    context.charge(kBytesPerCorner * (corners - largest));
+    largest = corners;
+}
+
 Vec3 unit_normal(const Vec3& n) {
     const double x = n.x, y = n.y, z = n.z, squared = x * x + y * y + z * z;
     if (!(squared > 1e-60 && squared < 1e60)) return {0, 0, 1};
@@ -38,7 +45,11 @@ bool is_turned(const Vec3 (&p)[3], const Vec3 (&normals)[3]) {
     return behind == 3;
 }
 
-void add_mesh(Scene& scene, Mesh&& mesh) {
+void add_mesh(LoadContext& context, Scene& scene, Mesh&& mesh) {
+    context.charge(sizeof(Mesh) + sizeof(Node) + sizeof(int) + sizeof(Primitive) + 2 * mesh.name.size());
+    if (scene.nodes.size() >= context.options().max_nodes)
+        throw Error(ErrorCode::kLimit, "more nodes than the limit of " + std::to_string(context.options().max_nodes),
+                    context.file());
     if (scene.scenes.empty()) scene.scenes.emplace_back();
     Node node;
     node.name = mesh.name;

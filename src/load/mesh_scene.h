@@ -34,6 +34,9 @@ void resize(LoadContext& context, std::vector<T>& values, std::size_t count) {
 // Light grey, neither metallic nor glossy. Both sides are drawn, as these formats know no culling.
 Material plain_material();
 
+// Charges the scratch memory of a polygon of `corners`, so far as it exceeds that of `largest` before.
+void charge_polygon(LoadContext& context, std::size_t corners, std::size_t& largest);
+
 // At unit length, or (0, 0, 1) for what has no direction.
 Vec3 unit_normal(const Vec3& n);
 
@@ -41,8 +44,8 @@ Vec3 unit_normal(const Vec3& n);
 // normals only.
 bool is_turned(const Vec3 (&positions)[3], const Vec3 (&normals)[3]);
 
-// Appends the mesh and a root node of the active scene that carries it.
-void add_mesh(Scene& scene, Mesh&& mesh);
+// Appends the mesh and a root node of the active scene that carries it. Charged, and counted by max_nodes.
+void add_mesh(LoadContext& context, Scene& scene, Mesh&& mesh);
 
 // Throws kLimit for more than the options allow.
 void count_triangles(const LoadContext& context, std::uint64_t triangles, const std::string& place);

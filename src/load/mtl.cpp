@@ -25,7 +25,10 @@ class MtlReader {
     std::vector<MtlMaterial> read() {
         while (text_.next_line()) {
             const std::string keyword = lower(text_.word());
-            if (keyword.empty() || keyword.front() == '#') continue;
+            if (keyword.empty() || keyword.front() == '#') {
+                text_.rest();  // a backslash at the end of a comment joins nothing
+                continue;
+            }
             if (keyword == "newmtl") {
                 begin();
             } else if (materials_.empty()) {
@@ -52,7 +55,11 @@ class MtlReader {
         if (keyword == "tf") return color([&](Vec3 c) { m.filter = c; });
         if (keyword == "ns") return number([&](float v) { m.shininess = std::max(v, 0.0f); });
         if (keyword == "ni") return number([&](float v) { m.ior = v; });
-        if (keyword == "tr") return number([&](float v) { m.opacity = 1 - std::clamp(v, 0.0f, 1.0f); });
+        // Writers disagree about Tr; where d is there, it counts.
+        if (keyword == "tr")
+            return number([&](float v) {
+                if (!m.has_opacity) m.opacity = 1 - std::clamp(v, 0.0f, 1.0f);
+            });
         if (keyword == "pr") return number([&](float v) { m.roughness = std::clamp(v, 0.0f, 1.0f); });
         if (keyword == "pm") return number([&](float v) { m.metallic = std::clamp(v, 0.0f, 1.0f); });
         if (keyword == "illum")
@@ -63,6 +70,7 @@ class MtlReader {
                 text_.word();
                 warn_once("halos are not drawn: d -halo is read as d");
             }
+            m.has_opacity = true;
             return number([&](float v) { m.opacity = std::clamp(v, 0.0f, 1.0f); });
         }
         return keyword == "sharpness";  // of reflections, for engines that blur them

@@ -26,6 +26,7 @@ struct MtlMaterial {
     std::string name;
     std::optional<Vec3> ambient;                                           // Ka
     Vec3 diffuse{0.8f, 0.8f, 0.8f}, specular{0, 0, 0}, emission{0, 0, 0};  // Kd, Ks, Ke
+    bool has_opacity = false;                                              // d was there
     float shininess = 32, opacity = 1, ior = 1.5f;                         // Ns, d, Ni
     Vec3 filter{1, 1, 1};                                                  // Tf
     std::optional<float> roughness, metallic;                              // Pr, Pm

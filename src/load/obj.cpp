@@ -17,27 +17,26 @@ constexpr std::uint32_t kNothing = 0xffffffff;
 
 std::size_t at(std::int32_t number) { return static_cast<std::size_t>(number); }
 
-// Numbers for pairs of a position and something else, in the order in which they come up.
-class NumbersByPosition {
+// Numbers for a position together with two more numbers, in the order in which they come up: a table with open
+// addresses, twice as large as what is in it.
+class Numbering {
   public:
-    NumbersByPosition(LoadContext& context, std::size_t positions) : context_(context) {
-        resize(context, heads_, positions);
-        std::fill(heads_.begin(), heads_.end(), kNothing);
-    }
+    explicit Numbering(LoadContext& context) : context_(context) { grow(64); }
+
     // The number of (position, a, b), and whether it is new.
     std::pair<std::uint32_t, bool> insert(std::int32_t position, std::int64_t a, std::int64_t b) {
-        std::uint32_t& head = heads_[at(position)];
-        for (std::uint32_t e = head; e != kNothing; e = entries_[e].next)
-            if (entries_[e].a == a && entries_[e].b == b) return {e, false};
-        const auto number = static_cast<std::uint32_t>(entries_.size());
-        append(context_, entries_, {a, b, position, head});
-        head = number;
-        return {number, true};
+        if (2 * (entries_.size() + 1) > slots_.size()) grow(2 * slots_.size());
+        const Entry entry{a, b, position};
+        std::uint32_t& slot = slot_of(entry);
+        if (slot != kNothing) return {slot, false};
+        slot = static_cast<std::uint32_t>(entries_.size());
+        append(context_, entries_, entry);
+        return {static_cast<std::uint32_t>(entries_.size() - 1), true};
     }
     std::size_t size() const { return entries_.size(); }
     // Forgets all, at the cost of what is in it.
     void clear() {
-        for (const Entry& e : entries_) heads_[at(e.position)] = kNothing;
+        for (auto e = entries_.rbegin(); e != entries_.rend(); ++e) slot_of(*e) = kNothing;
         entries_.clear();
     }
 
@@ -45,10 +44,25 @@ class NumbersByPosition {
     struct Entry {
         std::int64_t a, b;
         std::int32_t position;
-        std::uint32_t next;
+        bool operator==(const Entry&) const = default;
     };
+    // Where the entry is, or would be. Taken out from the last one in to the first, none is in another's way.
+    std::uint32_t& slot_of(const Entry& e) {
+        std::uint64_t hash = static_cast<std::uint64_t>(e.position) * 0x9e3779b97f4a7c15u;
+        hash = (hash ^ hash >> 29 ^ static_cast<std::uint64_t>(e.a)) * 0xbf58476d1ce4e5b9u;
+        hash = (hash ^ hash >> 32 ^ static_cast<std::uint64_t>(e.b)) * 0x94d049bb133111ebu;
+        std::size_t at = (hash ^ hash >> 31) & (slots_.size() - 1);
+        while (slots_[at] != kNothing && !(entries_[slots_[at]] == e)) at = (at + 1) & (slots_.size() - 1);
+        return slots_[at];
+    }
+    void grow(std::size_t slots) {
+        context_.charge(std::uint64_t{slots} * sizeof(std::uint32_t));
+        slots_.assign(slots, kNothing);
+        for (std::uint32_t i = 0; i < entries_.size(); ++i) slot_of(entries_[i]) = i;
+    }
+
     LoadContext& context_;
-    std::vector<std::uint32_t> heads_;
+    std::vector<std::uint32_t> slots_;  // as many as a power of two
     std::vector<Entry> entries_;
 };
 
@@ -62,16 +76,17 @@ class ObjBuilder {
     void build() {
         make_normals();
         sort_elements();
-        NumbersByPosition vertices(context_, text_.positions.size());
+        Numbering vertices(context_);
         std::vector<Mesh> meshes(text_.objects.size());
         for (std::size_t i = 0; i < meshes.size(); ++i) meshes[i].name = text_.objects[i];
         for (std::uint32_t part = 0; part < text_.parts.size(); ++part) {
             if (text_.parts[part].elements == 0) continue;
+            context_.charge(sizeof(Primitive));
             meshes[text_.parts[part].object].primitives.push_back(primitive(part, vertices));
             vertices.clear();
         }
         for (Mesh& mesh : meshes)
-            if (!mesh.primitives.empty()) add_mesh(scene_, std::move(mesh));
+            if (!mesh.primitives.empty()) add_mesh(context_, scene_, std::move(mesh));
     }
 
   private:
@@ -87,6 +102,7 @@ class ObjBuilder {
     void split(const ObjElement& e) {
         triangles_.clear();
         polygon_.clear();
+        charge_polygon(context_, e.corner_count, largest_);
         for (std::uint32_t c = 0; c < e.corner_count; ++c)
             polygon_.push_back(text_.positions[at(text_.corners[e.first_corner + c].position)]);
         triangulate_polygon(polygon_, triangles_);
@@ -100,7 +116,7 @@ class ObjBuilder {
 
     // Where the file says what is smooth.
     void make_grouped_normals() {
-        NumbersByPosition groups(context_, text_.positions.size());
+        Numbering groups(context_);
         std::vector<std::uint32_t> corners, normals;
         std::uint32_t flat = 0;
         const auto base = static_cast<std::int32_t>(text_.normals.size());
@@ -162,7 +178,7 @@ class ObjBuilder {
         for (std::size_t i = 1; i < first_element_.size(); ++i) first_element_[i] += first_element_[i - 1];
     }
 
-    Primitive primitive(std::uint32_t part, NumbersByPosition& vertices) {
+    Primitive primitive(std::uint32_t part, Numbering& vertices) {
         Primitive p;
         p.mode = text_.parts[part].mode;
         const std::int32_t material = text_.parts[part].material;
@@ -220,6 +236,7 @@ class ObjBuilder {
     const std::vector<int>& materials_;  // of the scene, by those of the text + 1
     std::vector<std::uint32_t> triangles_;
     std::vector<Vec3> polygon_;
+    std::size_t largest_ = 0;                 // polygon so far
     std::vector<std::size_t> first_element_;  // by part
 };
 
@@ -229,7 +246,7 @@ Scene read_obj(LoadContext& context, std::string_view text, const SceneFiles& fi
     Scene scene;
     ObjText parsed = read_obj_text(context, text);
     ObjMaterials materials(context, files, scene);
-    for (const std::string& library : parsed.libraries) materials.read_library(library);
+    for (const std::string& library : parsed.libraries) materials.read_libraries(library);
     std::vector<char> used(parsed.materials.size() + 1, 0);
     for (const ObjPart& part : parsed.parts) used[at(part.material + 1)] = 1;
     std::vector<int> numbers(used.size(), kNone);

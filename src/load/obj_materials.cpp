@@ -67,7 +67,21 @@ int ObjMaterials::find(const std::string& name) {
     return plain();
 }
 
-void ObjMaterials::read_library(const std::string& name) {
+// By the definition blanks part several names; by habit they are part of one.
+void ObjMaterials::read_libraries(const std::string& names) {
+    if (names.find(' ') == std::string::npos || read_library(names, false)) {
+        if (names.find(' ') == std::string::npos) read_library(names, true);
+        return;
+    }
+    for (std::size_t at = 0; at < names.size();) {
+        const std::size_t end = std::min(names.find(' ', at), names.size());
+        if (end > at) read_library(names.substr(at, end - at), true);
+        at = end + 1;
+    }
+}
+
+// Returns whether it was there; says so otherwise, unless it was only an attempt.
+bool ObjMaterials::read_library(const std::string& name, bool must_be_there) {
     std::string path = name;
     std::replace(path.begin(), path.end(), '\\', '/');
     try {
@@ -75,9 +89,11 @@ void ObjMaterials::read_library(const std::string& name) {
         const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
         for (const MtlMaterial& m : read_mtl_text(context_, text, path.substr(0, 60)))
             if (!materials_.contains(m.name)) materials_[m.name] = add_material(m);
+        return true;
     } catch (const Error& error) {
         if (error.code() != ErrorCode::kInput) throw;
-        context_.warn("mtllib: " + error.message());
+        if (must_be_there) context_.warn("mtllib: " + error.message());
+        return false;
     }
 }
 
@@ -243,13 +259,17 @@ void ObjMaterials::combine(const Part& part) {
     into = std::move(made);
 }
 
-// Cut out where alpha is all or nothing, else blended.
 void ObjMaterials::choose_alpha_mode(Material& material) {
     const int texture = material.texture(TextureSlot::kBaseColor).texture;
     if (texture == kNone || material.alpha_mode == AlphaMode::kBlend) return;
-    const int picture = scene_.textures[static_cast<std::size_t>(texture)].picture;
+    material.alpha_mode = alpha_mode_of(scene_.textures[static_cast<std::size_t>(texture)].picture);
+}
+
+// Cut out where alpha is all or nothing, else blended.
+AlphaMode ObjMaterials::alpha_mode_of(int picture) {
+    const auto [known, is_new] = alpha_modes_.try_emplace(picture, AlphaMode::kOpaque);
     const Image* pixels = scene_.pictures[static_cast<std::size_t>(picture)].pixels.get();
-    if (!pixels) return;
+    if (!is_new || !pixels) return known->second;
     bool partly = false, clear = false;
     const std::size_t count = static_cast<std::size_t>(pixels->width()) * static_cast<std::size_t>(pixels->height());
     for (std::size_t i = 0; i < count && !partly; ++i) {
@@ -257,7 +277,8 @@ void ObjMaterials::choose_alpha_mode(Material& material) {
         partly = alpha > 0 && alpha < 65535;
         clear = clear || alpha == 0;
     }
-    if (partly || clear) material.alpha_mode = partly ? AlphaMode::kBlend : AlphaMode::kMask;
+    if (partly || clear) known->second = partly ? AlphaMode::kBlend : AlphaMode::kMask;
+    return known->second;
 }
 
 void ObjMaterials::finish() {

@@ -23,7 +23,8 @@ class ObjMaterials {
     // `files`: where libraries and pictures lie; it outlives this.
     ObjMaterials(LoadContext& context, const SceneFiles& files, Scene& scene);
 
-    void read_library(const std::string& name);
+    // What one statement `mtllib` names.
+    void read_libraries(const std::string& names);
     // The scene's material of that name, or the plain one, with a warning for names that are not known.
     int find(const std::string& name);
     int plain();
@@ -39,6 +40,7 @@ class ObjMaterials {
         int into;        // picture, made of it
     };
 
+    bool read_library(const std::string& name, bool must_be_there);
     int add_material(const MtlMaterial& m);
     void set_opacity(const MtlMaterial& m, int number);
     void set_physical(const MtlMaterial& m, int number);
@@ -48,6 +50,7 @@ class ObjMaterials {
     int combined(int to, int from, char channel, int to_channel);
     void combine(const Part& part);
     void choose_alpha_mode(Material& material);
+    AlphaMode alpha_mode_of(int picture);
     void warn_once(const std::string& what);
 
     LoadContext& context_;
@@ -59,7 +62,8 @@ class ObjMaterials {
     std::map<std::pair<int, bool>, int> textures_;  // by picture and clamping
     std::vector<PictureFile> picture_files_;
     std::vector<Part> parts_;
-    std::vector<int> masked_;  // materials whose alpha decides how they are drawn
+    std::map<int, AlphaMode> alpha_modes_;  // of pictures
+    std::vector<int> masked_;               // materials whose alpha decides how they are drawn
     std::set<std::string> warned_;
 };
 

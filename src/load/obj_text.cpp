@@ -36,8 +36,10 @@ class ObjReader {
         out_.objects.emplace_back();
         while (text_.next_line()) {
             const std::string_view keyword = text_.word();
-            if (keyword.empty() || keyword.front() == '#') continue;
-            statement(keyword);
+            if (keyword.empty() || keyword.front() == '#')
+                text_.rest();  // a backslash at the end of a comment joins nothing
+            else
+                statement(keyword);
         }
         finish_smoothing();
         if (!out_.colors.empty()) out_.colors.resize(out_.positions.size(), Vec4{1, 1, 1, 1});

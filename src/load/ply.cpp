@@ -281,10 +281,14 @@ std::uint32_t checked_vertex(const LoadContext& context, std::int64_t number, co
 std::vector<std::uint32_t> triangles_of(LoadContext& context, const PlyMesh& mesh) {
     std::vector<std::uint32_t> triangles, face, split;
     std::vector<Vec3> polygon;
-    std::size_t first = 0;
+    std::size_t first = 0, largest = 0;
     for (std::size_t f = 0; f < mesh.sizes.size(); ++f) {
         const std::string place = "face " + std::to_string(f);
         const std::size_t n = mesh.sizes[f];
+        if (n > 3) {
+            count_triangles(context, triangles.size() / 3 + n - 2, place);
+            charge_polygon(context, n, largest);
+        }
         face.clear(), polygon.clear(), split.clear();
         for (std::size_t k = 0; k < n; ++k) {
             face.push_back(checked_vertex(context, mesh.corners[first + k], mesh, place));
@@ -384,7 +388,7 @@ Scene read_ply(LoadContext& context, std::span<const std::byte> file) {
     if (!p.colors.empty()) scene.materials[0].base_color = {1, 1, 1, 1};
     Mesh whole;
     if (!p.positions.empty()) whole.primitives.push_back(std::move(p));
-    add_mesh(scene, std::move(whole));
+    add_mesh(context, scene, std::move(whole));
     finish_scene(context, scene);
     return scene;
 }

@@ -44,7 +44,8 @@ std::vector<Point> in_plane(std::span<const Vec3> corners) {
 // Cuts ears off a ring of corners.
 class EarClipper {
   public:
-    explicit EarClipper(std::vector<Point> points) : points_(std::move(points)), next_(count()), previous_(count()) {
+    explicit EarClipper(std::vector<Point> points)
+        : points_(std::move(points)), next_(count()), previous_(count()), budget_(4096 + 512 * std::int64_t{count()}) {
         for (std::uint32_t i = 0; i < count(); ++i) {
             next_[i] = i + 1 < count() ? i + 1 : 0;
             previous_[i] = i > 0 ? i - 1 : count() - 1;
@@ -82,6 +83,7 @@ class EarClipper {
     double turn(std::uint32_t i) const { return area(points_[previous_[i]], points_[i], points_[next_[i]]); }
 
     bool is_ear(std::uint32_t i) {
+        --budget_;
         if (turn(i) <= 0) return false;
         const Point &a = points_[previous_[i]], &b = points_[i], &c = points_[next_[i]];
         for (const std::uint32_t r : reflex_) {
@@ -98,7 +100,8 @@ class EarClipper {
 
     std::vector<Point> points_;
     std::vector<std::uint32_t> next_, previous_, reflex_;
-    std::int64_t budget_ = std::int64_t{1} << 26;  // tests of a corner against an ear
+    // Tests that may be made: what simple polygons need, and what keeps time linear in the size of a file.
+    std::int64_t budget_;
 };
 
 }  // namespace

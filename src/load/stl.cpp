@@ -18,14 +18,14 @@ std::uint32_t number_at(std::span<const std::byte> file, std::size_t at) {
     return number;
 }
 
-void add_solid(Scene& scene, std::string name, std::vector<Vec3>&& positions) {
+void add_solid(LoadContext& context, Scene& scene, std::string name, std::vector<Vec3>&& positions) {
     Mesh mesh;
     mesh.name = std::move(name);
     Primitive p;
     p.material = 0;
     p.positions = std::move(positions);
     if (!p.positions.empty()) mesh.primitives.push_back(std::move(p));
-    add_mesh(scene, std::move(mesh));
+    add_mesh(context, scene, std::move(mesh));
 }
 
 void read_binary(LoadContext& context, std::span<const std::byte> file, Scene& scene) {
@@ -39,7 +39,7 @@ void read_binary(LoadContext& context, std::span<const std::byte> file, Scene& s
     // Twelve floats: the normal, three corners; two bytes of attributes.
     for (std::size_t t = 0; t < count; ++t)
         std::memcpy(&positions[3 * t], file.data() + kHeader + 4 + kTriangle * t + 12, 3 * sizeof(Vec3));
-    add_solid(scene, {}, std::move(positions));
+    add_solid(context, scene, {}, std::move(positions));
 }
 
 // solid NAME { facet normal x y z  outer loop  (vertex x y z) * 3  endloop  endfacet } endsolid NAME
@@ -63,6 +63,7 @@ class AsciiReader {
   private:
     void take(std::string_view word) {
         if (word == "solid") {
+            if (corners_ != 0) context_.fail("a solid begins within a triangle", text_.place());
             if (open_) end_solid();
             name_ = text_.rest();
             open_ = true;
@@ -96,7 +97,7 @@ class AsciiReader {
     }
     void end_solid() {
         if (!open_) context_.fail("the end of a solid that has not begun", text_.place());
-        add_solid(scene_, std::exchange(name_, {}), std::exchange(positions_, {}));
+        add_solid(context_, scene_, std::exchange(name_, {}), std::exchange(positions_, {}));
         open_ = false;
     }
 

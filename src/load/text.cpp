@@ -68,7 +68,8 @@ std::from_chars_result parse_whole(std::string_view word, T& value) {
     // from_chars takes no plus sign.
     if (word.size() > 1 && word[0] == '+' && word[1] != '-') word.remove_prefix(1);
     std::from_chars_result result = std::from_chars(word.data(), word.data() + word.size(), value);
-    if (result.ec == std::errc() && result.ptr != word.data() + word.size()) result.ec = std::errc::invalid_argument;
+    // Also behind a number that is out of range.
+    if (result.ptr != word.data() + word.size()) result.ec = std::errc::invalid_argument;
     return result;
 }
 

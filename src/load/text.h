@@ -12,7 +12,9 @@ namespace tessera {
 class TextCursor {
   public:
     // `joins`: a backslash at the end of a line joins the next one to it.
-    explicit TextCursor(std::string_view text, bool joins = false) : text_(text), joins_(joins) {}
+    // A byte order mark is passed over.
+    explicit TextCursor(std::string_view text, bool joins = false)
+        : text_(text.starts_with("\xef\xbb\xbf") ? text.substr(3) : text), joins_(joins) {}
 
     // Goes to the next line; false after the last one. Call it before the first word. Lines end with a
     // line feed, a carriage return or both.

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <map>
 #include <tuple>
 #include <utility>
 
@@ -64,6 +65,7 @@ int error_memory(void*, void*) { return 0; }
 struct ZipFiles::Archive {
     MemoryFile file;
     unzFile zip = nullptr;
+    std::map<std::string, unz64_file_pos> places;  // of the files, by name
 
     ~Archive() {
         if (zip) unzClose(zip);
@@ -85,7 +87,7 @@ ZipFiles::ZipFiles(LoadContext& context, std::span<const std::byte> file) : arch
     unzGetGlobalInfo64(archive_->zip, &info);
     if (info.number_entry > kMostEntries)
         context.fail(std::to_string(info.number_entry) + " files in the archive, at most 65536 are read");
-    find_scene();
+    find_scene(context);
     if (scene_.empty()) context.fail("the archive holds no scene (.gltf, .glb, .obj, .ply, .stl)");
     const std::size_t slash = scene_.rfind('/');
     if (slash != std::string::npos) folder_ = scene_.substr(0, slash + 1);
@@ -93,7 +95,7 @@ ZipFiles::ZipFiles(LoadContext& context, std::span<const std::byte> file) : arch
 
 ZipFiles::~ZipFiles() = default;
 
-void ZipFiles::find_scene() {
+void ZipFiles::find_scene(LoadContext& context) {
     std::tuple<std::ptrdiff_t, std::string> best;
     for (int more = unzGoToFirstFile(archive_->zip); more == UNZ_OK; more = unzGoToNextFile(archive_->zip)) {
         char text[4096] = {};
@@ -101,6 +103,10 @@ void ZipFiles::find_scene() {
         if (unzGetCurrentFileInfo64(archive_->zip, &info, text, sizeof text - 1, nullptr, 0, nullptr, 0) != UNZ_OK)
             return;
         const std::string_view name(text);
+        unz64_file_pos place{};
+        unzGetFilePos64(archive_->zip, &place);
+        context.charge(sizeof place + name.size() + 64);
+        archive_->places.emplace(name, place);
         if (!is_scene(name) || is_hidden(name)) continue;
         std::tuple<std::ptrdiff_t, std::string> found{std::count(name.begin(), name.end(), '/'), name};
         if (scene_.empty() || found < best) best = std::move(found), scene_ = std::get<1>(best);
@@ -110,11 +116,13 @@ void ZipFiles::find_scene() {
 Bytes ZipFiles::read_entry(LoadContext& context, const std::string& name, std::uint64_t most,
                            const std::string& place) const {
     const auto fail = [&](const char* reason) { context.fail(quoted(name) + " of the archive " + reason, place); };
-    constexpr int kCaseMatters = 1;
     unz_file_info64 info{};
-    if (unzLocateFile(archive_->zip, name.c_str(), kCaseMatters) != UNZ_OK ||
+    const auto found = archive_->places.find(name);
+    if (found == archive_->places.end()) fail("is not there");
+    unz64_file_pos place_in_archive = found->second;
+    if (unzGoToFilePos64(archive_->zip, &place_in_archive) != UNZ_OK ||
         unzGetCurrentFileInfo64(archive_->zip, &info, nullptr, 0, nullptr, 0, nullptr, 0) != UNZ_OK)
-        fail("is not there");
+        fail("is damaged");
     if (info.flag & 1) fail("is encrypted");
     const std::uint64_t size = std::min<std::uint64_t>(info.uncompressed_size, most);
     context.charge(size, place);

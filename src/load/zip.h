@@ -30,7 +30,7 @@ class ZipFiles : public SceneFiles {
 
   private:
     struct Archive;
-    void find_scene();
+    void find_scene(LoadContext& context);
     Bytes read_entry(LoadContext& context, const std::string& name, std::uint64_t most, const std::string& place) const;
 
     std::unique_ptr<Archive> archive_;

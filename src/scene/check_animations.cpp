@@ -7,7 +7,7 @@ namespace {
 std::size_t morph_targets(const Scene& scene, const Node& node) {
     if (node.mesh == kNone) return 0;
     for (const Primitive& p : scene.meshes[static_cast<std::size_t>(node.mesh)].primitives)
-        if (!p.targets.empty()) return p.targets.size();
+        if (!p.positions.empty() && !p.targets.empty()) return p.targets.size();
     return 0;
 }
 

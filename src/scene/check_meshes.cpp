@@ -17,6 +17,11 @@ void check_attribute(const std::vector<T>& data, std::size_t vertices, const Pla
 void check_primitive(const Scene& scene, const Primitive& p, const Place& place, bool values) {
     const std::size_t n = p.positions.size();
     place.reference(p.material, scene.materials.size(), "material");
+    for (std::size_t i = 0; i < p.variants.size(); ++i) {
+        const Place variant = place.child("variants", i);
+        variant.reference(p.variants[i].variant, scene.variants.size(), "variant");
+        variant.reference(p.variants[i].material, scene.materials.size(), "material");
+    }
     check_attribute(p.positions, n, place.child("positions"), values);
     check_attribute(p.normals, n, place.child("normals"), values);
     check_attribute(p.tangents, n, place.child("tangents"), values);

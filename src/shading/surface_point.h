@@ -48,7 +48,8 @@ TESSERA_INLINE Vec3T<F> geometric_normal(const InstanceView& instance, const Vec
     const Vec3T<F> zero = Vec3T<F>::splat(F(0.0f));
     const Vec3T<F> e1 = normalize_or(p1 - p0, zero), e2 = normalize_or(p2 - p0, zero);
     const Vec3T<F> toward_eye{F(0.0f), F(0.0f), F(1.0f)};
-    return normalize_or(transform_normal(instance.normal_to_camera, cross(e1, e2)), toward_eye);
+    const Vec3T<F> front = cross(e1, e2) * F(instance.skin_side);
+    return normalize_or(transform_normal(instance.normal_to_camera, front), toward_eye);
 }
 
 // Whether a normal has a direction at all.

@@ -262,6 +262,7 @@ TEST_F(CliRender, UsageErrorsExitWith2AndNameTheOption) {
         {{"-o", out, "--animation", "all"}, "--animation: the scene has no animations"},
         {{"-o", out, "--frames", "0-9"}, "--output: with --frames"},
         {{"-o", in_folder("{frame}.png")}, "--output: {frame} needs --frames"},
+        {{"-o", in_folder("{{frame}}.png"), "--frames", "0-1"}, "--output: with --frames"},
         {{"-o", in_folder("{frame}_{take}.png"), "--frames", "0-9"}, "{take} is no place"},
         {{"-o", in_folder("{frame:x}.png"), "--frames", "0-9"}, "is no width"},
         {{"-o", in_folder("{frame}}.png"), "--frames", "0-9"}, "--output: a }"},

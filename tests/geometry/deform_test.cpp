@@ -249,8 +249,14 @@ TEST(ANI5_Skins, MirroredJointsTurnTheWinding) {
     for (const PreparedNode& node : mirrored.nodes())
         if (node.node == 0 && node.mirrored) skinned = &node;
     ASSERT_TRUE(skinned);
-    // Normals stay on the outside.
+    // Normals stay on the outside, flat ones too.
     EXPECT_NEAR(mirrored.placements()[skinned->first].mesh->primitive().normals.front().z, 1, 1e-6);
+    scene.meshes[0].primitives[0].normals.clear();
+    const PreparedScene flat(scene);
+    for (const PreparedNode& node : flat.nodes())
+        if (node.mirrored) {
+            EXPECT_NEAR(flat.placements()[node.first].mesh->primitive().normals.front().z, 1, 1e-6);
+        }
 }
 
 // Without normals in the file, faces are flat wherever the vertices go.
@@ -306,6 +312,9 @@ TEST(Moments, DuplicatesPart) {
     const PlacedCamera later = framed.camera({}, 1);
     for (int c = 0; c < 4; ++c)
         for (int r = 0; r < 4; ++r) EXPECT_EQ(first.camera_to_world[c][r], later.camera_to_world[c][r]);
+    PreparedScene started_later(scene);
+    started_later.move_to({0, 0.03});
+    EXPECT_EQ(started_later.camera({}, 1).camera_to_world[3].x, first.camera_to_world[3].x);
     PreparedScene still(scene);
     EXPECT_NE(still.camera({}, 1).camera_to_world[3].x, first.camera_to_world[3].x);
 }

@@ -48,6 +48,25 @@ TEST(Instancing, InstancesStayInstances) {
     EXPECT_NE(load_error(instanced(4, 3)).find("SCALE has 3 elements, others have 4"), std::string::npos);
 }
 
+TEST(Instancing, ALightStaysAtItsNode) {
+    Scene scene = load_text(instanced(4, 4));
+    scene.lights.emplace_back();
+    scene.nodes[0].light = 0;
+    scene.nodes[0].instances[0].translation = {50, 0, 0};
+    Scene without = scene;
+    without.nodes[0].instances.clear();
+    RenderOptions options;
+    options.width = options.height = 48;
+    options.view.eye = Vec3{0.3f, 0.3f, 14};
+    options.view.target = Vec3{0.3f, 0.3f, 10};
+    options.exposure_ev = 0.0f;
+    options.want_linear = true;
+    // The triangle at the node would be lit from the node; one that an instance puts there is lit as it.
+    scene.nodes[0].instances[1] = {};
+    scene.nodes[0].instances.resize(2);
+    EXPECT_EQ(hash_pixels(render(scene, options).linear), hash_pixels(render(without, options).linear));
+}
+
 // The same scene with a node for each instance.
 TEST(Instancing, ADrawsWhatNodesDraw) {
     if (all_gltf_models().empty()) GTEST_SKIP() << "no models: set TESSERA_MODELS";
@@ -87,7 +106,14 @@ TEST(Variants, ChooseMaterials) {
     EXPECT_EQ(scene.meshes[0].primitives[1].material, 0);
     choose_variant(scene, 0);
     EXPECT_EQ(scene.meshes[0].primitives[0].material, 1);
-    EXPECT_THROW(choose_variant(scene, 2), Error);
+    EXPECT_NO_THROW(validate(scene));
+    // A primitive that one variant leaves alone goes back to its own.
+    scene.variants.emplace_back("none");
+    choose_variant(scene, 2);
+    EXPECT_EQ(scene.meshes[0].primitives[0].material, 0);
+    EXPECT_THROW(choose_variant(scene, 3), Error);
+    scene.meshes[0].primitives[0].variants.push_back({0, 99});
+    EXPECT_THROW(validate(scene), Error);
     std::string wrong = text;
     wrong.replace(wrong.find("\"variants\":[1]"), 14, "\"variants\":[7]");
     EXPECT_NE(load_error(wrong).find("variant"), std::string::npos);

@@ -44,6 +44,11 @@ TEST(Mtl, EveryFactor) {
     EXPECT_FALSE(m[1].ambient);
 }
 
+TEST(Mtl, DCountsWhereTrSaysOtherwise) {
+    EXPECT_EQ(parse("newmtl a\nd 1\nTr 1\n")[0].opacity, 1.0f);
+    EXPECT_EQ(parse("newmtl a\nTr 1\nd 0.75\n")[0].opacity, 0.75f);
+}
+
 TEST(Mtl, TextureOptionsComeBeforeNamesWithBlanks) {
     const auto m = parse(
         "newmtl a\nmap_Kd -o 0.25 0.5 -s 2 3 1 -clamp on -blendu off -texres 256 dir\\my file.png  \n"
@@ -151,6 +156,19 @@ TEST_F(MtlFiles, RoughnessAndMetalShareATexture) {
         scene.pictures.at(static_cast<std::size_t>(scene.textures.at(static_cast<std::size_t>(texture)).picture));
     EXPECT_EQ(picture.pixels->data<std::uint8_t>()[1], 200);
     EXPECT_EQ(picture.pixels->data<std::uint8_t>()[2], 40);
+}
+
+TEST_F(MtlFiles, LibrariesMayHaveBlanksOrBeSeveral) {
+    write("a.mtl", "newmtl a\nKd 1 0 0\n");
+    write("b.mtl", "newmtl b\nKd 0 1 0\n");
+    write("my lib.mtl", "newmtl c\nKd 0 0 1\n");
+    const std::string shape = "v 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl ";
+    for (const auto& [library, name] : {std::pair("a.mtl b.mtl", "b"), {"my lib.mtl", "c"}}) {
+        const Scene scene = load_text(std::string("mtllib ") + library + "\n" + shape + name + "\nf 1 2 3\n", "x.obj",
+                                      {}, folder.path().string());
+        EXPECT_TRUE(scene.warnings.empty()) << scene.warnings[0];
+        EXPECT_EQ(material(scene).name, name);
+    }
 }
 
 TEST_F(MtlFiles, WhatIsMissingIsAWarning) {

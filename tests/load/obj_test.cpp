@@ -157,6 +157,26 @@ TEST(Obj, ContinuedLinesAndForeignStatements) {
     EXPECT_NE(scene.warnings[1].find("\"whatever\""), std::string::npos);
 }
 
+// Files that once took minutes: corners that all stand at one place, in faces of their own and in one face.
+TEST(Obj, WorkStaysInProportion) {
+    std::string flat = "v 0 0 0\ns off\n", around = "v 0 0 0\n", one = "v 0 0 0\nf", textured = "v 0 0 0\n";
+    for (int i = 0; i < 100000; ++i) flat += "f 1 1 1\n";
+    for (int i = 0; i < 300000; ++i) one += " 1";
+    for (int i = 0; i < 50000; ++i) textured += "vt 0.5 0." + std::to_string(i) + "\nf 1/-1 1/-1 1/-1\n";
+    EXPECT_EQ(only_primitive(load_text(flat, "a.obj")).positions.size(), 100000u);
+    EXPECT_EQ(only_primitive(load_text(one, "a.obj")).indices.size(), 3u * 299998);
+    EXPECT_EQ(only_primitive(load_text(textured, "a.obj")).positions.size(), 50000u);
+    LoadOptions few;
+    few.max_nodes = 2;
+    EXPECT_NE(load_error("v 0 0 0\no a\np 1\no b\np 1\no c\np 1\n", "a.obj", few).find("limit of 2"),
+              std::string::npos);
+}
+
+TEST(Obj, CommentsJoinNothing) {
+    const Scene scene = load_text("v 0 0 0\n# from D:\\models\\\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "a.obj");
+    EXPECT_EQ(only_primitive(scene).positions.size(), 3u);
+}
+
 TEST(Obj, EmptyFilesDrawNothing) {
     EXPECT_TRUE(load_text("", "a.obj").meshes.empty());
     EXPECT_TRUE(load_text("# nothing\n", "a.obj").meshes.empty());

@@ -67,6 +67,7 @@ TEST(Stl, DamageIsNamed) {
               std::string::npos);
     EXPECT_NE(load_error("solid x\nvertex 0 0 0 vertex 1 1 1\nendsolid", "a.stl").find("within a triangle"),
               std::string::npos);
+    EXPECT_NE(load_error("solid x\nvertex 0 0 0\nsolid y\n", "a.stl").find("begins within"), std::string::npos);
     EXPECT_NE(load_error("solid x\nbanana", "a.stl").find("banana"), std::string::npos);
     EXPECT_NE(load_error("vertex 1 2 3", "a.stl"), "");
     std::vector<Vec3> infinite = kTwo;

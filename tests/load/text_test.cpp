@@ -28,6 +28,9 @@ TEST(TextCursor, LinesEndInThreeWays) {
     EXPECT_EQ(words_of("a b\n\nc\n"), want);
     EXPECT_EQ(words_of("a \t b\r\n\r\n  c  \r\n"), want);
     EXPECT_EQ(words_of("a b\r\rc"), want);
+    EXPECT_EQ(words_of("\xef\xbb\xbf"
+                       "a b\n\nc"),
+              want);
     EXPECT_EQ(words_of(""), Lines{});
     EXPECT_EQ(words_of("\n"), Lines{{}});
 }
@@ -65,7 +68,8 @@ TEST(TextNumbers, AreRoundedCorrectly) {
     EXPECT_TRUE(std::isinf(*parse_float("1" + std::string(1000, '0'))));
     EXPECT_EQ(parse_float("0." + std::string(1000, '0') + "1"), 0.0f);
     EXPECT_TRUE(std::isnan(*parse_float("nan")));
-    for (const char* word : {"", "-", "+", "1.5x", "x", "1 2", "--1", "+-1", "0x10"})
+    for (const char* word :
+         {"", "-", "+", "1.5x", "x", "1 2", "--1", "+-1", "0x10", "1e50x", "1e-50/", "1e999junk", "1e-999junk"})
         EXPECT_FALSE(parse_float(word)) << word;
     EXPECT_EQ(parse_integer("-12"), -12);
     EXPECT_FALSE(parse_integer("99999999999999999999"));
