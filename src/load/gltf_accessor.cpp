@@ -17,19 +17,6 @@ constexpr std::size_t kMostZeros = std::size_t{1} << 24;
 constexpr std::array<Shape, 7> kShapes = {
     {{"SCALAR", 1, 1}, {"VEC2", 2, 1}, {"VEC3", 3, 1}, {"VEC4", 4, 1}, {"MAT2", 2, 2}, {"MAT3", 3, 3}, {"MAT4", 4, 4}}};
 
-std::size_t component_bytes(ComponentType type) {
-    switch (type) {
-        case ComponentType::kByte:
-        case ComponentType::kUnsignedByte:
-            return 1;
-        case ComponentType::kShort:
-        case ComponentType::kUnsignedShort:
-            return 2;
-        default:
-            return 4;
-    }
-}
-
 ComponentType component_type(const Json& json) {
     const std::uint64_t value = json.integer();
     if (value < 5120 || value > 5126 || value == 5124) json.fail("there is no component type " + std::to_string(value));
@@ -80,6 +67,19 @@ std::vector<std::uint32_t> sparse_indices(GltfDocument& document, const Json& js
 }
 
 }  // namespace
+
+std::size_t component_bytes(ComponentType type) {
+    switch (type) {
+        case ComponentType::kByte:
+        case ComponentType::kUnsignedByte:
+            return 1;
+        case ComponentType::kShort:
+        case ComponentType::kUnsignedShort:
+            return 2;
+        default:
+            return 4;
+    }
+}
 
 std::uint64_t accessor_count(const GltfDocument& document, std::size_t index) {
     return element_count(document.item(GltfArray::kAccessors, index));

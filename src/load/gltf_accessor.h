@@ -23,6 +23,8 @@ enum class ComponentType : std::uint16_t {
     kFloat = 5126
 };
 
+std::size_t component_bytes(ComponentType type);
+
 // Elements in memory: element i begins at data + i * stride, its columns column_stride apart.
 struct Elements {
     const std::byte* data = nullptr;

@@ -111,11 +111,7 @@ void DracoPrimitive::supply(std::string_view attribute, Accessor& accessor) {
     if (static_cast<std::size_t>(values->num_components()) != accessor.components() || accessor.columns != 1)
         json_.at("attributes")
             .fail("the packed attribute has " + std::to_string(values->num_components()) + " components");
-    const std::size_t size =
-        accessor.component == ComponentType::kFloat || accessor.component == ComponentType::kUnsignedInt   ? 4
-        : accessor.component == ComponentType::kByte || accessor.component == ComponentType::kUnsignedByte ? 1
-                                                                                                           : 2;
-    const std::size_t stride = size * accessor.components();
+    const std::size_t stride = component_bytes(accessor.component) * accessor.components();
     context_.charge(std::uint64_t{stride} * vertices_, json_.place());
     values_.emplace_back(stride * vertices_);
     std::byte* const out = values_.back().data();
