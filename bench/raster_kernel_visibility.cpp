@@ -88,8 +88,8 @@ KernelWork label_work(const std::string& workload) {
         job.ordinal = t.ordinal.data();
         job.triangles = t.triangles.data();
         job.instances = t.frame.frame.instances.data();
-        job.distance = state->distance.data();
-        job.triangle = state->triangle.data();
+        job.planes.distance = state->distance.data();
+        job.planes.triangle = state->triangle.data();
         return seconds_of([&] { kernels.label(job); });
     };
     work.output = [=] {

@@ -1,6 +1,7 @@
 // Pictures and label planes. An Image owns one plane of `width` x `height` pixels, row by row from
 // the top left, without padding. Formats: rgba8 (display colour, sRGB-encoded, straight alpha),
-// rgba32f (linear Rec. 709, straight alpha unless a producer says otherwise), f32, u32.
+// rgba32f (linear Rec. 709, straight alpha unless a producer says otherwise); of labels, f32, u32, and two or
+// three f32.
 // Reading and writing throw tessera::Error; nothing here is global, so any thread may call.
 #pragma once
 
@@ -17,9 +18,9 @@
 
 namespace tessera {
 
-enum class PixelFormat { kRgba8, kRgba16, kRgba32f, kF32, kU32 };
+enum class PixelFormat { kRgba8, kRgba16, kRgba32f, kF32, kU32, kRg32f, kRgb32f };
 
-// Bytes of one pixel: 4, 8, 16, 4, 4.
+// Bytes of one pixel: 4, 8, 16, 4, 4, 8, 12.
 TESSERA_API std::size_t bytes_per_pixel(PixelFormat format);
 
 TESSERA_API void* allocate_pixels(std::size_t bytes);

@@ -7,6 +7,7 @@
 #include <tessera/image.h>
 #include <tessera/isa.h>
 #include <tessera/scene.h>
+#include <tessera/view.h>
 
 #include <cstdint>
 #include <functional>
@@ -24,35 +25,12 @@ enum class Engine : std::uint8_t {
 };
 TESSERA_API const char* name(Engine engine);
 
-// Where the camera stands. Exactly one way is used: `camera` (an index into Scene::cameras, at the
-// first node that carries it), else `eye`/`target`, else the scene's first camera, else the visible
-// bounds framed in a three-quarter view: where an animation is chosen, those of the whole of it, so that
-// the camera stands still.
-struct View {
-    std::optional<int> camera;
-    std::optional<Vec3> eye, target;
-    Vec3 up{0, 1, 0};
-    std::optional<float> yfov;  // radians; default 35 degrees
-    bool frame_bounds = false;  // ignore the scene's cameras
-    // For hosts that bring their own matrices and must match another renderer to the pixel: both or
-    // neither, in place of all of the above. `clip_from_world` follows OpenGL (y up, z from -w at the
-    // near plane to w at the far one); of its floats x, y and w come as they are, exactly so for nodes
-    // without a transform, and depth stays Tessera's: z' = (w - z) / 2. `camera_from_world` is the rigid
-    // part, into the space where shading is done: eye at the origin, looking along -Z.
-    std::optional<Mat4> clip_from_world, camera_from_world;
-
-    friend bool operator==(const View&, const View&) = default;
+// Where positions and normals of labels live. Turned from one to the other exactly, up to rounding.
+enum class LabelSpace : std::uint8_t {
+    kWorld,
+    kCamera,        // eye at the origin, looking along -Z, Y up
+    kOpenCvCamera,  // looking along Z, Y down
 };
-
-// A moment of a scene's animations. Before the first key of a channel and after its last one, their values hold.
-inline constexpr int kEveryAnimation = -2;
-struct Moment {
-    int animation = kNone;  // index into Scene::animations, kEveryAnimation, or kNone: as the nodes stand in the scene
-    double time = 0;        // seconds
-    friend bool operator==(const Moment&, const Moment&) = default;
-};
-// The time of the last key, in seconds; 0 without any.
-TESSERA_API double duration(const Animation& animation);
 
 enum class Lighting : std::uint8_t {
     kAuto,    // the scene's lights, or the studio when it has none
@@ -109,9 +87,18 @@ struct RenderOptions {
     int threads = 0;  // 0: what the process may use
     Isa isa = Isa::kAuto;
 
-    // Planes wanted; labels (depth, primitive) are taken at the pixel centre. Without colour and linear
-    // planes nothing is shaded, and the statistics count the labels.
-    bool want_color = true, want_linear = false, want_depth = false, want_primitive = false;
+    // Planes wanted, as RenderResult describes them. All but the first three are labels, taken at the pixel centre of
+    // the nearest surface with alpha of at least one half. Without the first three nothing is shaded, and the
+    // statistics count the labels. What is not wanted is not computed.
+    bool want_color = true, want_linear = false, want_alpha = false;
+    bool want_depth = false, want_primitive = false, want_node = false, want_material = false;
+    bool want_normal = false, want_shading_normal = false, want_uv = false, want_position = false, want_albedo = false;
+    bool want_motion = false;
+    bool euclidean_depth = false;  // distances to the eye instead of along the view axis
+    LabelSpace label_space = LabelSpace::kWorld;
+    std::optional<Mat4> label_from_world;  // rigid: a world of the host's own for kWorld
+    // The shots that motion is measured to; unset: the one that is drawn.
+    std::optional<Shot> motion_before, motion_after;
 
     std::uint64_t max_bytes = std::uint64_t{4} << 30;  // memory that rendering may take
     // Called from any thread, but one call at a time: rising from 0 to 1, and true to stop (render()
@@ -144,8 +131,21 @@ struct RenderResult {
     Image color;      // kRgba8, display-ready, straight alpha
     Image linear;     // kRgba32f, scene radiance before exposure, premultiplied alpha, no background;
                       // filtered: kMitchell may leave radiances a little below 0
+    Image alpha;      // kF32, the mean alpha of the pixel's samples, which is that of `linear`
     Image depth;      // kF32, metres along the view axis; infinite where nothing was hit
     Image primitive;  // kU32, 1 + number of the triangle in submission order; 0: none
+    Image node;       // kU32, 1 + index into Scene::nodes; 0: none
+    Image material;   // kU32, 1 + index into Scene::materials, or 1 + their number for the default; 0: none
+    // kRgb32f, unit, on the viewer's side: interpolated, and bent by the normal map. 0 where nothing was hit, like
+    // all that follow.
+    Image normal, shading_normal;
+    Image uv;        // kRg32f: the first set
+    Image position;  // kRgb32f, metres
+    Image albedo;    // kRgb32f, linear: base or diffuse colour with texture and vertex colour
+    // kRgba32f, pixels right and down: from here to where the same point of the surface is at motion_after (x, y), and
+    // at motion_before (z, w). 0 where it is behind the eye there.
+    Image motion;
+    Image motion_seen;  // kU32: 1 where that point is to be seen at motion_after, plus 2 at motion_before
     Image stage;      // the numbers of RenderOptions::show: kU32, or kF32 for kHiZ
     RenderStats stats;
     std::vector<std::string> warnings;

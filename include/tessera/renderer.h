@@ -27,6 +27,8 @@ class TESSERA_API Renderer {
     void draw(const View& view, RenderResult& result);
     // At another moment. What does not move is not made again.
     void draw(const View& view, const Moment& moment, RenderResult& result);
+    // And with motion measured to these shots.
+    void draw(const Shot& now, const Shot& before, const Shot& after, RenderResult& result);
 
     const RenderOptions& options() const;
 

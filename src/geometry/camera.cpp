@@ -82,10 +82,41 @@ glm::dvec3 three_quarter_direction(const glm::dvec3& up) {
     return right * (math::sin(kAzimuth) * ce) + front * (math::cos(kAzimuth) * ce) + u * se;
 }
 
-}  // namespace
+Bounds3 bounds_of(const std::function<void(const PointVisitor&)>& for_each_point) {
+    Bounds3 bounds;
+    for_each_point([&](const glm::dvec3& p) {
+        if (is_finite(p)) bounds.add(to_vec3(p));
+    });
+    return bounds;
+}
 
-PlacedCamera choose_camera(const Scene& scene, const NodeTransforms& nodes, const View& view, double aspect,
-                           const std::function<void(const PointVisitor&)>& for_each_point) {
+// The near plane of a camera that stands anywhere. Reversed depth in float is precise however near the plane; a
+// thousandth of the distance scale keeps it out of the way.
+float near_for(const glm::dvec3& eye, const Bounds3& bounds) {
+    const glm::dvec3 centre =
+        bounds.empty() ? glm::dvec3(0, 0, 0) : (to_dvec3(bounds.min) + to_dvec3(bounds.max)) * 0.5;
+    const glm::dvec3 d = centre - eye;
+    const glm::dvec3 half = bounds.empty() ? glm::dvec3(1, 1, 1) : to_dvec3(bounds.max) - centre;
+    const double scale =
+        std::sqrt(d.x * d.x + d.y * d.y + d.z * d.z) + std::sqrt(half.x * half.x + half.y * half.y + half.z * half.z);
+    return static_cast<float>(scale > 0 ? 1e-3 * scale : 1e-3);
+}
+
+// Where the view says, as a matrix.
+PlacedCamera posed_camera(const View& view, double yfov,
+                          const std::function<void(const PointVisitor&)>& for_each_point) {
+    PlacedCamera camera;
+    camera.camera_to_world = to_dmat4(*view.camera_to_world);
+    if (!is_finite(camera.camera_to_world) || !is_rigid(camera.camera_to_world))
+        throw Error(ErrorCode::kUsage,
+                    "camera_to_world must be rigid: a rotation and a translation, without scale or mirroring");
+    camera.lens.yfov = static_cast<float>(yfov);
+    camera.lens.znear = near_for(column(camera.camera_to_world, 3), bounds_of(for_each_point));
+    return camera;
+}
+
+PlacedCamera place_camera(const Scene& scene, const NodeTransforms& nodes, const View& view, double aspect,
+                          const std::function<void(const PointVisitor&)>& for_each_point) {
     const double yfov = view.yfov ? static_cast<double>(*view.yfov) : kDefaultFov;
     if (!(yfov > 0 && yfov < 3.1415))
         throw Error(ErrorCode::kUsage, "the field of view must be above 0 and below 180 degrees");
@@ -95,13 +126,14 @@ PlacedCamera choose_camera(const Scene& scene, const NodeTransforms& nodes, cons
             throw Error(ErrorCode::kUsage, "camera " + std::to_string(wanted) + " does not exist: the scene has " +
                                                std::to_string(scene.cameras.size()));
     }
+    if (!view.camera && view.camera_to_world) return posed_camera(view, yfov, for_each_point);
     if (view.camera || !(view.eye || view.target || view.frame_bounds)) {
         for (const int node : nodes.order) {
             const int carried = scene.nodes[static_cast<std::size_t>(node)].camera;
             if (carried == kNone || (view.camera && carried != *view.camera)) continue;
             const glm::dmat4 placement = orthonormal(nodes.world[static_cast<std::size_t>(node)]);
             if (!is_finite(placement)) throw Error(ErrorCode::kUsage, "the camera's placement is not finite");
-            PlacedCamera camera{placement, scene.cameras[static_cast<std::size_t>(carried)]};
+            PlacedCamera camera{placement, scene.cameras[static_cast<std::size_t>(carried)], {}};
             if (view.yfov) camera.lens.yfov = *view.yfov;
             return camera;
         }
@@ -126,24 +158,24 @@ PlacedCamera choose_camera(const Scene& scene, const NodeTransforms& nodes, cons
         return camera;
     }
 
-    const glm::dvec3 eye = to_dvec3(*view.eye);
-    Bounds3 bounds;
-    for_each_point([&](const glm::dvec3& p) {
-        if (is_finite(p)) bounds.add(to_vec3(p));
-    });
+    PlacedCamera camera;
+    camera.lens.yfov = static_cast<float>(yfov);
+    const Bounds3 bounds = bounds_of(for_each_point);
     const glm::dvec3 centre =
         bounds.empty() ? glm::dvec3(0, 0, 0) : (to_dvec3(bounds.min) + to_dvec3(bounds.max)) * 0.5;
-    PlacedCamera camera;
+    const glm::dvec3 eye = to_dvec3(*view.eye);
     camera.camera_to_world = placement_matrix(eye, view.target ? to_dvec3(*view.target) : centre, up);
     if (!is_finite(camera.camera_to_world)) throw Error(ErrorCode::kUsage, "eye and target must be finite");
-    camera.lens.yfov = static_cast<float>(yfov);
-    // Reversed depth in float is precise however near the plane; a thousandth of the distance scale
-    // keeps it out of the way.
-    const glm::dvec3 d = centre - eye;
-    const glm::dvec3 half = bounds.empty() ? glm::dvec3(1, 1, 1) : to_dvec3(bounds.max) - centre;
-    const double scale =
-        std::sqrt(d.x * d.x + d.y * d.y + d.z * d.z) + std::sqrt(half.x * half.x + half.y * half.y + half.z * half.z);
-    camera.lens.znear = static_cast<float>(scale > 0 ? 1e-3 * scale : 1e-3);
+    camera.lens.znear = near_for(eye, bounds);
+    return camera;
+}
+
+}  // namespace
+
+PlacedCamera choose_camera(const Scene& scene, const NodeTransforms& nodes, const View& view, double aspect,
+                           const std::function<void(const PointVisitor&)>& for_each_point) {
+    PlacedCamera camera = place_camera(scene, nodes, view, aspect, for_each_point);
+    camera.intrinsics = view.intrinsics;
     return camera;
 }
 

@@ -14,6 +14,7 @@ namespace tessera {
 struct PlacedCamera {
     glm::dmat4 camera_to_world{1.0};  // orthonormal
     Camera lens;
+    std::optional<Intrinsics> intrinsics;  // in place of the lens' angle
 };
 
 // Throws kUsage for a camera index that does not exist or is carried by no node of the active scene.

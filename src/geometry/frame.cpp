@@ -3,6 +3,7 @@
 #include <tessera/error.h>
 
 #include "geometry/matrix.h"
+#include "simd/math.h"
 
 #include <algorithm>
 
@@ -14,11 +15,28 @@ void store_rows(const glm::dmat4& m, int rows, float* out) {
         for (int c = 0; c < 4; ++c) out[4 * r + c] = static_cast<float>(m[c][r]);
 }
 
+// Sets the vertical angle of the largest picture around the axis that these intrinsics hold, for views that frame what is
+// visible; returns its aspect.
+double framing_lens(const Intrinsics& k, int width, int height, View& view) {
+    const bool finite = k.fx - k.fx == 0 && k.fy - k.fy == 0 && k.cx - k.cx == 0 && k.cy - k.cy == 0;
+    if (!finite || !(k.fx > 0 && k.fy > 0))
+        throw Error(ErrorCode::kUsage, "intrinsics must be finite, and their focal lengths positive");
+    double tx = std::min(k.cx + 0.5, width - k.cx - 0.5) / k.fx, ty = std::min(k.cy + 0.5, height - k.cy - 0.5) / k.fy;
+    // An axis that leaves the picture frames nothing well; any angle will do.
+    if (!(tx > 0)) tx = width / k.fx;
+    if (!(ty > 0)) ty = height / k.fy;
+    view.yfov = static_cast<float>(std::clamp(2 * math::atan2(ty, 1.0), 1e-3, 3.1));
+    return tx / ty;
+}
+
 FrameCamera camera_of(PreparedScene& scene, const View& view, int width, int height) {
     if (view.clip_from_world.has_value() != view.camera_from_world.has_value())
         throw Error(ErrorCode::kUsage, "a view needs both of clip_from_world and camera_from_world, or neither");
     if (view.clip_from_world) return host_camera(*view.clip_from_world, *view.camera_from_world, width, height);
-    return frame_camera(scene.camera(view, static_cast<double>(width) / height), width, height);
+    if (!view.intrinsics) return frame_camera(scene.camera(view, static_cast<double>(width) / height), width, height);
+    View posed = view;
+    const double aspect = framing_lens(*view.intrinsics, width, height, posed);
+    return frame_camera(scene.camera(posed, aspect), width, height);
 }
 
 // What all meshes at one node share.
@@ -50,13 +68,21 @@ void make_frame(PreparedScene& scene, const View& view, int width, int height, F
     frame.prepared.clear();
     frame.lights.clear();
     frame.warnings.clear();
+    frame.node_of_instance.clear();
+    frame.node_to_clip.clear();
+    frame.world_to_camera = camera.world_to_camera;
     std::uint64_t triangles = 0;
     bool skipped_mode = false;
-    for (const PreparedNode& node : scene.nodes()) {
+    for (std::size_t n = 0; n < scene.nodes().size(); ++n) {
+        const PreparedNode& node = scene.nodes()[n];
         const glm::dmat4 node_to_camera = camera.world_to_camera * node.world;
         if (node.light != kNone) frame.lights.push_back({node.light, node_to_camera});
         if (!node.has_mesh) continue;
         const glm::dmat4 node_to_clip = camera.node_to_clip(node.world, node_to_camera);
+        if (frame.keep_nodes) {
+            frame.node_to_clip.resize(scene.nodes().size(), glm::dmat4(0.0));
+            frame.node_to_clip[n] = node_to_clip;
+        }
         // Nothing can be said of where such a mesh is.
         if (!is_finite(node_to_clip) || !is_finite(to_dmat4(to_mat4(node_to_clip)))) {
             frame.warnings.push_back("node " + std::to_string(node.node) + ": its placement overflows; not drawn");
@@ -73,6 +99,7 @@ void make_frame(PreparedScene& scene, const View& view, int width, int height, F
             if (triangles > 0xfffffffeu) throw Error(ErrorCode::kLimit, "the scene has more than 4294967294 triangles");
             frame.instances.push_back(instance);
             frame.prepared.push_back(placement.mesh);
+            if (frame.keep_nodes) frame.node_of_instance.push_back(static_cast<std::uint32_t>(n));
         }
     }
     frame.triangle_count = static_cast<std::uint32_t>(triangles);

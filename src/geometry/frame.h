@@ -19,12 +19,19 @@ struct PlacedLight {
 
 struct Frame {
     ProjectionView projection{};
+    glm::dmat4 world_to_camera{1.0};
     std::vector<InstanceView> instances;        // in order of submission
     std::vector<const PreparedMesh*> prepared;  // per instance
     std::vector<PlacedLight> lights;            // in order of the nodes
     std::uint32_t triangle_count = 0;
     std::vector<std::string> warnings;
     std::shared_ptr<PreparedScene> owned;  // of a frame that was made from a scene alone
+
+    // For motion: per instance the place of its node in PreparedScene::nodes(), and by that place the matrices to clip
+    // space. Made where they are asked for.
+    bool keep_nodes = false;
+    std::vector<std::uint32_t> node_of_instance;
+    std::vector<glm::dmat4> node_to_clip;
 
     // The instance that triangle `number` (0-based) belongs to.
     const InstanceView& instance_of(std::uint32_t number) const;

@@ -47,6 +47,9 @@ glm::dmat3 normal_matrix(const glm::dmat4& m);
 // -1 when the linear part mirrors (triangles change their winding), 0 when it flattens, else 1.
 int determinant_sign(const glm::dmat4& m);
 
+// Whether the matrix is a rotation and a translation, up to what the rounding of floats may amount to.
+bool is_rigid(const glm::dmat4& m);
+
 // transform.h's camera matrices before rounding. The placement is orthonormal for any input: without
 // a direction of view it looks along -Z, and where `up` is no help the axis farthest from the view is.
 glm::dmat4 placement_matrix(const glm::dvec3& eye, const glm::dvec3& target, const glm::dvec3& up);

@@ -24,12 +24,14 @@ void store_projection(const glm::dmat4& camera_to_clip, int width, int height, P
     p.scale_y = p.clip_from_camera[5];
 }
 
-bool is_rigid(const glm::dmat4& m) {
-    for (int a = 0; a < 3; ++a)
-        for (int b = a; b < 3; ++b)
-            if (!(std::abs(glm::dot(glm::dvec3(m[a]), glm::dvec3(m[b])) - (a == b ? 1 : 0)) <= kTolerance))
-                return false;
-    return determinant_sign(m) > 0 && m[0].w == 0 && m[1].w == 0 && m[2].w == 0 && m[3].w == 1;
+// Of OpenCV's pixels to clip space: u and v of a direction, which lies along -Z here and whose Y points up.
+glm::dmat4 pinhole_matrix(const Intrinsics& k, int width, int height, double near, std::optional<double> far) {
+    glm::dmat4 m = perspective_matrix(1.0, 1.0, near, far);  // for its rows of z and w
+    m[0].x = 2 * k.fx / width;
+    m[1].y = 2 * k.fy / height;
+    m[2].x = 1 - (2 * k.cx + 1) / width;
+    m[2].y = (2 * k.cy + 1) / height - 1;
+    return m;
 }
 
 }  // namespace
@@ -37,7 +39,14 @@ bool is_rigid(const glm::dmat4& m) {
 FrameCamera frame_camera(const PlacedCamera& camera, int width, int height) {
     FrameCamera f;
     f.world_to_camera = rigid_inverse(camera.camera_to_world);
-    f.camera_to_clip = projection_matrix(camera.lens, static_cast<double>(width) / height);
+    const Camera& lens = camera.lens;
+    if (!camera.intrinsics) {
+        f.camera_to_clip = projection_matrix(lens, static_cast<double>(width) / height);
+    } else {
+        if (lens.type == Camera::Type::kOrthographic) refuse("intrinsics do not fit an orthographic camera");
+        const std::optional<double> far = lens.zfar ? std::optional<double>(*lens.zfar) : std::nullopt;
+        f.camera_to_clip = pinhole_matrix(*camera.intrinsics, width, height, lens.znear, far);
+    }
     store_projection(f.camera_to_clip, width, height, f.projection);
     f.projection.orthographic = camera.lens.type == Camera::Type::kOrthographic;
     f.projection.near = camera.lens.znear;
@@ -76,11 +85,10 @@ FrameCamera host_camera(const Mat4& clip_from_world, const Mat4& camera_from_wor
     return f;
 }
 
-bool is_centred(const ProjectionView& projection) {
+bool is_square(const ProjectionView& projection) {
     const float* x = projection.clip_from_camera;
     const float* y = x + 4;
-    const float off = std::max(
-        {std::fabs(x[1]), std::fabs(x[2]), std::fabs(x[3]), std::fabs(y[0]), std::fabs(y[2]), std::fabs(y[3])});
+    const float off = std::max(std::fabs(x[1]), std::fabs(y[0]));
     return off <= static_cast<float>(kTolerance) * std::min(std::fabs(x[0]), std::fabs(y[1]));
 }
 

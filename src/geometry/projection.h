@@ -24,7 +24,7 @@ FrameCamera frame_camera(const PlacedCamera& camera, int width, int height);
 // be a distance along -Z of camera space, or constant.
 FrameCamera host_camera(const Mat4& clip_from_world, const Mat4& camera_from_world, int width, int height);
 
-// Whether the picture is centred on the camera's axis and square to it, as scale_x and scale_y alone can say.
-bool is_centred(const ProjectionView& projection);
+// Whether the picture is square to the camera's axes: x and y of clip space go with x and y of camera space.
+bool is_square(const ProjectionView& projection);
 
 }  // namespace tessera

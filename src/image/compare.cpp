@@ -66,6 +66,10 @@ ImageDifference compare_images(const Image& a, const Image& b, double tolerance)
             return compare<float>(a, b, 4, 1, tolerance);
         case PixelFormat::kF32:
             return compare<float>(a, b, 1, 1, tolerance);
+        case PixelFormat::kRg32f:
+            return compare<float>(a, b, 2, 1, tolerance);
+        case PixelFormat::kRgb32f:
+            return compare<float>(a, b, 3, 1, tolerance);
         case PixelFormat::kU32:
             return compare<std::uint32_t>(a, b, 1, std::numeric_limits<std::uint32_t>::max(), tolerance);
     }

@@ -16,7 +16,10 @@ std::size_t bytes_per_pixel(PixelFormat format) {
         case PixelFormat::kU32:
             return 4;
         case PixelFormat::kRgba16:
+        case PixelFormat::kRg32f:
             return 8;
+        case PixelFormat::kRgb32f:
+            return 12;
         case PixelFormat::kRgba32f:
             return 16;
     }

@@ -60,7 +60,7 @@ RasterCounters RasterEngine::draw(const Frame& frame, const ShadingContext& shad
     std::vector<SamplePosition> positions;
     if (targets.colors()) positions = settings.samples;
     const bool centre_is_sample = positions.size() == 1 && positions[0].x == 128 && positions[0].y == 128;
-    if ((targets.labels() && !centre_is_sample) || positions.empty()) positions.push_back({128, 128});
+    if ((targets.labels.any() && !centre_is_sample) || positions.empty()) positions.push_back({128, 128});
     const std::function<void()> pause = [&] { settings.checkpoint(0.0); };
     const FrontEndInput input{frame, shading, raster_kernels(settings.isa), grid, positions, pause};
     state_->front.run(input, arena);

@@ -16,11 +16,17 @@ namespace tessera {
 struct RasterTargets {
     std::uint8_t* rgba = nullptr;  // display pixels
     float* linear = nullptr;       // mean of the samples, premultiplied RGBA
-    float* distance = nullptr;     // labels at the pixel centre
-    std::uint32_t* triangle = nullptr;
+    LabelPlanes labels{};          // at the pixel centre
+    bool euclidean = false;        // their distances are those to the eye
+    // 3x4 rows: where their positions and normals live.
+    float label_from_camera[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
 
     bool colors() const { return rgba || linear; }
-    bool labels() const { return distance || triangle; }
+    SurfaceLabels surface_labels() const {
+        const LabelPlanes& p = labels;
+        return {p.normal != nullptr, p.shading_normal != nullptr, p.uv != nullptr, p.position != nullptr,
+                p.albedo != nullptr};
+    }
 };
 
 // The stages of a picture with colours, drawn: planes of one number per pixel, null where not wanted.

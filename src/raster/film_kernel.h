@@ -1,5 +1,5 @@
-// What is seen of a tile; and from its sums to the planes of the picture: colours developed, labels
-// written. Part of the kernel file, once per instruction set.
+// What is seen of a tile; and from its sums to the picture: colours developed. Part of the kernel file, once
+// per instruction set.
 #pragma once
 
 #include "raster/visibility_kernel.h"
@@ -43,35 +43,6 @@ inline void develop_tile(const DevelopJob& job) {
             {load<Float>(job.r + at) * weight, load<Float>(job.g + at) * weight, load<Float>(job.b + at) * weight},
             alpha * weight);
     });
-}
-
-inline void label_tile(const LabelJob& job) {
-    auto* const distances = reinterpret_cast<unsigned char*>(job.distance);
-    auto* const numbers = reinterpret_cast<unsigned char*>(job.triangle);
-    const Float infinity = as_float(Uint(0x7f800000u));
-    if (!job.ordinal) {
-        if (distances) fill_tile(distances, job.window, as_uint(infinity));
-        if (numbers) fill_tile(numbers, job.window, Uint(0u));
-        return;
-    }
-    if (distances)
-        write_tile(distances, job.window, [&](int at) {
-            const Mask hit = load<Uint>(job.ordinal + at) != Uint(0u);
-            if (!any(hit)) return as_uint(infinity);
-            return as_uint(select(hit, distance_of_depth(job.projection, load<Float>(job.depth + at)), infinity));
-        });
-    if (numbers)
-        write_tile(numbers, job.window, [&](int at) {
-            alignas(64) std::uint32_t lanes[kLanes<Float>];
-            for (int lane = 0; lane < kLanes<Float>; ++lane) {
-                const std::uint32_t o = job.ordinal[at + lane];
-                lanes[lane] = 0;
-                if (o == 0) continue;
-                const TileTriangle& t = job.triangles[o - 1];
-                lanes[lane] = job.instances[t.instance].first_triangle + t.triangle + 1;
-            }
-            return load<Uint>(lanes);
-        });
 }
 
 }  // namespace tessera::TESSERA_ISA_NAMESPACE

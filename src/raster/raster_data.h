@@ -4,6 +4,7 @@
 #pragma once
 
 #include "shading/film.h"
+#include "shading/label_point.h"
 #include "shading/shade.h"
 #include "shading/surface_planes.h"
 #include "shading/triangle_setup.h"
@@ -231,16 +232,47 @@ struct DevelopJob {
     std::uint8_t* rgba;  // the tile's first pixel
 };
 
-// Writes labels of a tile from its depth and ordinals. Without ordinals: of a tile that shows nothing.
+// Planes of labels, null where not wanted. Misses: an infinite distance, all else 0.
+struct LabelPlanes {
+    float* distance;          // metres along the view axis, or to the eye
+    std::uint32_t* triangle;  // 1 + number in the frame
+    std::uint32_t *node, *material;  // 1 + index
+    float *normal, *shading_normal, *position, *albedo;  // three numbers a pixel
+    float* uv;                                           // two
+
+    TESSERA_INLINE bool any() const {
+        return distance || triangle || node || material || normal || shading_normal || position || albedo || uv;
+    }
+};
+
+// Writes labels of a tile from its depth and ordinals: distances and numbers. Without ordinals: of a tile that shows
+// nothing.
 struct LabelJob {
     ProjectionView projection;
+    int x0, y0;  // first pixel
+    bool euclidean;
     const float* depth;
     const std::uint32_t* ordinal;
     const TileTriangle* triangles;
     const InstanceView* instances;
     TileWindow window;
-    float* distance;          // the tile's first pixel; null where not wanted
-    std::uint32_t* triangle;  // 1 + number in the frame
+    LabelPlanes planes;  // from the tile's first pixel on
+};
+
+// Labels of the surface, of triangles that share a layout and, where it has a say, the material: every pixel of the
+// tile with an ordinal, at its centre.
+struct LabelSurfaceJob {
+    const SurfaceSource* source;
+    const MaterialView* material;
+    SurfaceLabels labels;
+    SurfaceLayout layout;
+    const float* records;
+    const std::uint32_t* record_of;  // by ordinal: where in `records`
+    int x0, y0, side;
+    const std::uint32_t* ordinal;
+    const float* label_from_camera;  // 3x4 rows
+    std::size_t picture_width;
+    LabelPlanes planes;  // from the tile's first pixel on
 };
 
 struct RasterKernels {
@@ -253,6 +285,7 @@ struct RasterKernels {
     void (*shade_points)(const ShadeJob& job);
     void (*develop)(const DevelopJob& job);
     void (*label)(const LabelJob& job);
+    void (*label_surfaces)(const LabelSurfaceJob& job);
 };
 
 }  // namespace tessera

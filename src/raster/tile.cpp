@@ -17,6 +17,20 @@ void make_record(const InstanceView& instance, std::uint32_t triangle, const Pro
     if (setup.visible()) make_surface_record(instance, triangle, setup, projection, layout, record);
 }
 
+// The first instance that each one may share a batch with.
+void find_batches(const std::vector<InstanceView>& instances, bool by_material, TileTask::Batches& batches) {
+    std::vector<std::vector<std::uint32_t>> kinds;
+    for (std::uint32_t i = 0; i < instances.size(); ++i) {
+        const std::uint32_t kind = by_material ? instances[i].material : 0;
+        if (kinds.size() <= kind) kinds.resize(kind + 1);
+        const auto found = std::find_if(kinds[kind].begin(), kinds[kind].end(), [&](std::uint32_t other) {
+            return batches.layouts[other] == batches.layouts[i];
+        });
+        batches.batch_of.push_back(found == kinds[kind].end() ? i : *found);
+        if (batches.batch_of[i] == i) kinds[kind].push_back(i);
+    }
+}
+
 }  // namespace
 
 TileTask::TileTask(const Frame& f, const ShadingContext& s, const RasterSettings& o, const RasterTargets& t,
@@ -28,19 +42,16 @@ TileTask::TileTask(const Frame& f, const ShadingContext& s, const RasterSettings
       grid(g),
       front(e),
       kernels(raster_kernels(o.isa)),
-      source{f.instances.data(), e.vertices(), &s, f.projection, &make_record} {
-    // The first instance that each one may be shaded with, by material.
-    std::vector<std::vector<std::uint32_t>> kinds;
-    for (std::uint32_t i = 0; i < f.instances.size(); ++i) {
-        const InstanceView& instance = f.instances[i];
-        layouts.push_back(surface_layout(instance.mesh, s.materials[instance.material], f.projection.orthographic));
-        if (kinds.size() <= instance.material) kinds.resize(instance.material + 1);
-        std::vector<std::uint32_t>& same_material = kinds[instance.material];
-        const auto found = std::find_if(same_material.begin(), same_material.end(),
-                                        [&](std::uint32_t other) { return layouts[other] == layouts[i]; });
-        batch_of.push_back(found == same_material.end() ? i : *found);
-        if (batch_of[i] == i) same_material.push_back(i);
+      source{f.instances.data(), e.vertices(), &s, f.projection, &make_record},
+      labels(t.surface_labels()) {
+    const bool orthographic = f.projection.orthographic;
+    for (const InstanceView& i : f.instances) {
+        const MaterialView& material = s.materials[i.material];
+        shading_batches.layouts.push_back(surface_layout(i.mesh, material, orthographic));
+        if (labels.any()) label_batches.layouts.push_back(label_layout(i.mesh, material, labels, orthographic));
     }
+    find_batches(f.instances, true, shading_batches);
+    if (labels.any()) find_batches(f.instances, labels.of_material(), label_batches);
 }
 
 Tile::Tile() = default;
@@ -86,7 +97,7 @@ void Tile::draw(const TileTask& task, int index) {
         }
         inspect();
     }
-    if (task.targets.labels()) label(centre_seen);
+    if (task.targets.labels.any()) label(centre_seen);
 }
 
 std::uint32_t Tile::number(std::uint32_t ordinal) const {
@@ -181,51 +192,6 @@ TileWindow Tile::window(std::initializer_list<const void*> planes) const {
     w.streamed = w.stride % kLine == 0 && w.stride * static_cast<std::size_t>(task_->frame.projection.height) > kStays;
     for (const void* plane : planes) w.streamed &= reinterpret_cast<std::uintptr_t>(plane) % kLine == 0;
     return w;
-}
-
-// Labels at the pixel centre: of the nearest surface with alpha of at least one half. `seen`: the
-// centre is the sample whose visibility stands.
-void Tile::label(bool seen) {
-    if (triangle_count_ == 0) return write_labels(false);
-    const SamplePosition centre{128, 128};
-    if (!seen) {
-        const TileCounters before = counters;
-        find_visible(centre);
-        // Where colours are drawn the counters are theirs.
-        if (task_->targets.colors()) counters = before;
-    }
-    if (!fragments_.empty()) {
-        make_records();
-        point_pixel_.clear();
-        point_ordinal_.clear();
-        for (const Fragment& f : fragments_) {
-            point_pixel_.push_back(f.pixel);
-            point_ordinal_.push_back(f.ordinal);
-        }
-        shade_list(centre);
-        for (std::size_t i = 0; i < fragments_.size(); ++i) {  // the last one that is solid enough stays
-            if (!(point_color_[3][i] >= 0.5f)) continue;
-            ordinal_[fragments_[i].pixel] = fragments_[i].ordinal;
-            depth_[fragments_[i].pixel] = fragments_[i].depth;
-        }
-    }
-    if (!task_->targets.colors())
-        for (const std::uint32_t o : ordinal_) pixels_covered += o != 0;
-    write_labels(true);
-}
-
-void Tile::write_labels(bool something) const {
-    LabelJob job{};
-    job.projection = task_->frame.projection;
-    job.depth = depth_.data();
-    job.ordinal = something ? ordinal_.data() : nullptr;
-    job.triangles = triangles_.data();
-    job.instances = task_->frame.instances.data();
-    const std::size_t first = picture_place(0);
-    job.distance = task_->targets.distance ? task_->targets.distance + first : nullptr;
-    job.triangle = task_->targets.triangle ? task_->targets.triangle + first : nullptr;
-    job.window = window({job.distance, job.triangle});
-    task_->kernels.label(job);
 }
 
 // A tile that nothing reaches.

@@ -24,9 +24,15 @@ struct TileTask {
     const FrontEnd& front;
     const RasterKernels& kernels;
     const SurfaceSource source;
-    // By instance: which instances may share a batch (equal numbers: equal material and layout).
-    std::vector<std::uint32_t> batch_of;
-    std::vector<SurfaceLayout> layouts;
+    // By instance: the planes that it needs, and which instances may share a batch (equal numbers: equal layout,
+    // and equal material where it has a say).
+    struct Batches {
+        std::vector<SurfaceLayout> layouts;
+        std::vector<std::uint32_t> batch_of;
+    };
+    Batches shading_batches;
+    const SurfaceLabels labels;
+    Batches label_batches;  // where labels of the surface are wanted
 };
 
 // Where a pixel of a tile is, whose pixels lie as blocks.
@@ -62,13 +68,17 @@ class Tile {
     void find_visible(SamplePosition offset);
     void sort_fragments();
     std::uint32_t list_visible();
-    void make_records();
+    void make_records(const std::vector<SurfaceLayout>& layouts);
     void take_sample(SamplePosition offset, bool first);
     void shade_opaque(SamplePosition offset, bool first, Planes& planes);
     void shade_list(SamplePosition offset);
     void compose_fragments(SamplePosition offset);
     void label(bool seen);
+    void choose_label_fragments();
     void write_labels(bool something) const;
+    void clear_surface_labels() const;
+    void label_surfaces();
+    LabelPlanes label_planes() const;
     void estimate_cost();
     void inspect();
     void finish_colors();
@@ -93,11 +103,11 @@ class Tile {
     std::vector<Fragment> fragments_;
     Buffer<TileTriangle> triangles_;
     Buffer<std::uint8_t> seen_;
-    Buffer<std::uint32_t> visible_, record_of_, batch_;
+    Buffer<std::uint32_t> visible_, record_of_, batch_, batch_ordinals_;
     Buffer<float> records_;
     Planes sum_, sample_;
     // Points of shade_list: the request, and the answer.
-    std::vector<std::uint32_t> point_pixel_, point_ordinal_, order_, batch_ordinal_;
+    std::vector<std::uint32_t> point_pixel_, point_ordinal_, order_, batch_ordinal_, shown_batches_;
     std::vector<std::int32_t> batch_x_, batch_y_;
     std::array<std::vector<float>, 4> batch_color_, point_color_;
 };

@@ -36,7 +36,7 @@ std::uint32_t Tile::list_visible() {
 }
 
 // Surface records of everything seen, in runs of one instance.
-void Tile::make_records() {
+void Tile::make_records(const std::vector<SurfaceLayout>& layouts) {
     const std::uint32_t count = list_visible();
     std::uint32_t* record_of = record_of_.reserve(triangle_count_ + 1);
     record_of[0] = 0;
@@ -47,7 +47,7 @@ void Tile::make_records() {
         SurfaceJob job{};
         job.source = &task_->source;
         job.instance = instance;
-        job.layout = task_->layouts[instance];
+        job.layout = layouts[instance];
         const auto floats = static_cast<std::size_t>(surface_floats(job.layout));
         std::uint32_t end = first;
         for (; end < count && triangles_[visible_[end] - 1].instance == instance; ++end) {
@@ -67,14 +67,14 @@ ShadeJob Tile::shade_job(std::uint32_t instance) const {
     ShadeJob job{};
     job.source = &task_->source;
     job.material = &task_->shading.materials[task_->frame.instances[instance].material];
-    job.layout = task_->layouts[instance];
+    job.layout = task_->shading_batches.layouts[instance];
     job.records = records_.data();
     job.record_of = record_of_.data();
     return job;
 }
 
 void Tile::take_sample(SamplePosition offset, bool first) {
-    make_records();
+    make_records(task_->shading_batches.layouts);
     if (fragments_.empty()) return shade_opaque(offset, first, sum_);
     shade_opaque(offset, true, sample_);
     compose_fragments(offset);
@@ -90,8 +90,8 @@ void Tile::shade_opaque(SamplePosition offset, bool first, Planes& planes) {
         const std::uint32_t instance = triangles_[*o - 1].instance;
         const AlphaMode mode = task_->shading.materials[task_->frame.instances[instance].material].alpha_mode;
         if (mode == AlphaMode::kBlend) continue;
-        one = !any || batch == task_->batch_of[instance];
-        batch = task_->batch_of[instance];
+        one = !any || batch == task_->shading_batches.batch_of[instance];
+        batch = task_->shading_batches.batch_of[instance];
         any = true;
     }
     if (one && any) {
@@ -137,7 +137,7 @@ void Tile::shade_list(SamplePosition offset) {
     const std::size_t count = point_ordinal_.size();
     for (std::vector<float>& plane : point_color_) plane.resize(count);
     const auto batch = [&](std::uint32_t point) {
-        return task_->batch_of[triangles_[point_ordinal_[point] - 1].instance];
+        return task_->shading_batches.batch_of[triangles_[point_ordinal_[point] - 1].instance];
     };
     order_.resize(count);
     for (std::uint32_t i = 0; i < count; ++i) order_[i] = i;

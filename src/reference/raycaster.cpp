@@ -8,8 +8,11 @@ namespace tessera {
 
 CastRay primary_ray(const ProjectionView& projection, SamplePosition at) {
     const Vec2T<float> ndc = sample_ndc<float>(at.x, at.y, projection.width, projection.height);
-    const double x = static_cast<double>(ndc.x) / projection.scale_x,
-                 y = static_cast<double>(ndc.y) / projection.scale_y;
+    // Where the axis meets the picture: clip x = m[0] x + m[2] z + m[3], and w is -z or 1.
+    const float* m = projection.clip_from_camera;
+    const double middle_x = projection.orthographic ? m[3] : -m[2], middle_y = projection.orthographic ? m[7] : -m[6];
+    const double x = (static_cast<double>(ndc.x) - middle_x) / projection.scale_x,
+                 y = (static_cast<double>(ndc.y) - middle_y) / projection.scale_y;
     if (projection.orthographic) return {{x, y, 0}, {0, 0, -1}};
     return {{0, 0, 0}, {x, y, -1}};
 }

@@ -27,7 +27,9 @@ void SurfaceSampler::fetch_planes(std::uint32_t triangle) {
     select(triangle);
     if (planes_of_ == triangle) return;
     const std::uint32_t index = triangle - instance_->first_triangle;
-    layout_ = surface_layout(instance_->mesh, material(triangle), frame_.projection.orthographic);
+    const bool orthographic = frame_.projection.orthographic;
+    layout_ = labels_ ? label_layout(instance_->mesh, material(triangle), *labels_, orthographic)
+                      : surface_layout(instance_->mesh, material(triangle), orthographic);
     make_surface_record(*instance_, index, setup_, frame_.projection, layout_, record_);
     const Corner<float> c[3] = {corner(index, 0), corner(index, 1), corner(index, 2)};
     geometric_normal_ = geometric_normal(*instance_, c[0].position, c[1].position, c[2].position);
@@ -39,13 +41,22 @@ Corner<float> SurfaceSampler::corner(std::uint32_t index, int i) const {
                         instance_->mesh.triangles[3 * std::size_t{index} + static_cast<std::size_t>(i)]);
 }
 
-SurfacePoint<float> SurfaceSampler::point(std::uint32_t triangle, SamplePosition at) {
+SurfacePoint<float> SurfaceSampler::sample(std::uint32_t triangle, SamplePosition at, float footprint_scale) {
     fetch_planes(triangle);
     const float x = static_cast<float>(at.x), y = static_cast<float>(at.y);
     SurfaceSample<float> sample;
     sample_planes(
         layout_, x, y, [this](int i) { return record_[i]; }, sample);
-    SurfacePoint<float> s = surface_point(layout_, rays_, sample, x, y, context_.footprint_scale);
+    return surface_point(layout_, rays_, sample, x, y, footprint_scale);
+}
+
+LabelPoint<float> SurfaceSampler::label(std::uint32_t triangle, SamplePosition at, const float* label_from_camera) {
+    const SurfacePoint<float> s = sample(triangle, at, 1.0f);
+    return label_point(*labels_, layout_, material(triangle), label_from_camera, s);
+}
+
+SurfacePoint<float> SurfaceSampler::point(std::uint32_t triangle, SamplePosition at) {
+    SurfacePoint<float> s = sample(triangle, at, context_.footprint_scale);
     s.geometric_normal = geometric_normal_ * s.side;
     if (layout_.tangent >= 0) s.normal = shading_normal(material(triangle), s);
     return s;

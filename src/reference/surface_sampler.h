@@ -3,8 +3,11 @@
 #pragma once
 
 #include "geometry/frame.h"
+#include "shading/label_point.h"
 #include "shading/shade.h"
 #include "shading/triangle_setup.h"
+
+#include <optional>
 
 namespace tessera {
 
@@ -13,9 +16,16 @@ class SurfaceSampler {
     // Both must outlive the sampler.
     SurfaceSampler(const Frame& frame, const ShadingContext& context)
         : frame_(frame), context_(context), rays_(frame.projection) {}
+    // For labels of the surface: with the planes that they need.
+    SurfaceSampler(const Frame& frame, const ShadingContext& context, const SurfaceLabels& labels)
+        : SurfaceSampler(frame, context) {
+        labels_ = labels;
+    }
 
     // `triangle` is a number in the frame (0-based); `at` a position inside its picture.
     SurfacePoint<float> point(std::uint32_t triangle, SamplePosition at);
+    // Labels there, of a sampler that was made for them. `label_from_camera`: 3x4 rows.
+    LabelPoint<float> label(std::uint32_t triangle, SamplePosition at, const float* label_from_camera);
     // Canonical depth (reversed) of the triangle at a position.
     float depth(std::uint32_t triangle, SamplePosition at);
     // Distance along the view axis there, from the canonical depth.
@@ -27,6 +37,7 @@ class SurfaceSampler {
     // The same for a ray's hit anywhere on the triangle, from the texture's finest level.
     float alpha(std::uint32_t triangle, const double (&barycentric)[3]);
 
+    const PictureRays& rays() const { return rays_; }
     const TriangleSetup& setup(std::uint32_t triangle);
     const InstanceView& instance(std::uint32_t triangle);
     const MaterialView& material(std::uint32_t triangle) { return context_.materials[instance(triangle).material]; }
@@ -35,6 +46,7 @@ class SurfaceSampler {
   private:
     void select(std::uint32_t triangle);
     void fetch_planes(std::uint32_t triangle);
+    SurfacePoint<float> sample(std::uint32_t triangle, SamplePosition at, float footprint_scale);
     Corner<float> corner(std::uint32_t index, int i) const;
 
     const Frame& frame_;
@@ -43,6 +55,7 @@ class SurfaceSampler {
     std::uint32_t selected_ = kNothing, planes_of_ = kNothing;
     const InstanceView* instance_ = nullptr;
     PictureRays rays_;
+    std::optional<SurfaceLabels> labels_;
     TriangleSetup setup_;
     SurfaceLayout layout_;  // of planes_of_, like what follows
     float record_[kMaxSurfaceFloats];

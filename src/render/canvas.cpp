@@ -1,7 +1,6 @@
 #include "render/canvas.h"
 
 #include <algorithm>
-#include <limits>
 
 namespace tessera {
 namespace {
@@ -80,31 +79,6 @@ void develop_picture(const float* sums, float weight, const FilmView& film, cons
     });
 }
 
-LabelCounts take_labels(ReferenceEngine& engine, const RunControl& control, const RasterTargets& targets) {
-    const SamplePosition centre{128, 128};
-    const Visibility seen = engine.see(centre, control);
-    std::vector<std::uint32_t> nearest = seen.triangle;
-    // Fragments come far to near: the last one that is solid enough wins.
-    for (const Fragment& f : seen.transparent) {
-        const auto width = static_cast<std::uint32_t>(seen.width);
-        const SamplePosition at{256 * static_cast<std::int32_t>(f.pixel % width) + centre.x,
-                                256 * static_cast<std::int32_t>(f.pixel / width) + centre.y};
-        if (engine.sampler().alpha(f.triangle, at) >= 0.5f) nearest[f.pixel] = f.triangle + 1;
-    }
-    LabelCounts counts{seen.counters, 0};
-    for (const std::uint32_t t : nearest) counts.pixels += t != 0;
-    if (targets.triangle) std::copy(nearest.begin(), nearest.end(), targets.triangle);
-    if (!targets.distance) return counts;
-    for (std::size_t i = 0; i < nearest.size(); ++i) {
-        const auto width = static_cast<std::size_t>(seen.width);
-        const SamplePosition at{256 * static_cast<std::int32_t>(i % width) + centre.x,
-                                256 * static_cast<std::int32_t>(i / width) + centre.y};
-        targets.distance[i] =
-            nearest[i] == 0 ? std::numeric_limits<float>::infinity() : engine.sampler().distance(nearest[i] - 1, at);
-    }
-    return counts;
-}
-
 void add_counters(RenderStats& stats, const VisibilityCounters& counters, bool first) {
     stats.fragments_passed += counters.fragments_passed;
     if (!first) return;
@@ -113,11 +87,6 @@ void add_counters(RenderStats& stats, const VisibilityCounters& counters, bool f
     stats.culled_backface = counters.culled_backface;
     stats.culled_degenerate = counters.culled_degenerate;
     stats.clipped = counters.clipped;
-}
-
-void add_counters(RenderStats& stats, const LabelCounts& counts) {
-    add_counters(stats, counts.counters, true);
-    stats.pixels_covered = counts.pixels;
 }
 
 void add_counters(RenderStats& stats, const RasterCounters& counters, bool first) {
@@ -138,13 +107,38 @@ void add_counters(RenderStats& stats, const RasterCounters& counters, bool first
     stats.tile_side = counters.tile_side;
 }
 
-RasterTargets make_planes(const RenderOptions& options, RenderResult& result) {
+RasterTargets make_planes(const RenderOptions& o, RenderResult& result) {
     RasterTargets targets;
-    targets.rgba = make_plane<std::uint8_t>(options.want_color, options, PixelFormat::kRgba8, result.color);
-    targets.linear = make_plane<float>(options.want_linear, options, PixelFormat::kRgba32f, result.linear);
-    targets.distance = make_plane<float>(options.want_depth, options, PixelFormat::kF32, result.depth);
-    targets.triangle = make_plane<std::uint32_t>(options.want_primitive, options, PixelFormat::kU32, result.primitive);
+    targets.rgba = make_plane<std::uint8_t>(o.want_color, o, PixelFormat::kRgba8, result.color);
+    // Alpha is taken from it.
+    targets.linear = make_plane<float>(o.want_linear || o.want_alpha, o, PixelFormat::kRgba32f, result.linear);
+    make_plane<float>(o.want_alpha, o, PixelFormat::kF32, result.alpha);
+    LabelPlanes& labels = targets.labels;
+    labels.distance = make_plane<float>(o.want_depth, o, PixelFormat::kF32, result.depth);
+    labels.triangle =
+        make_plane<std::uint32_t>(o.want_primitive || o.want_motion, o, PixelFormat::kU32, result.primitive);
+    labels.node = make_plane<std::uint32_t>(o.want_node, o, PixelFormat::kU32, result.node);
+    labels.material = make_plane<std::uint32_t>(o.want_material, o, PixelFormat::kU32, result.material);
+    labels.normal = make_plane<float>(o.want_normal, o, PixelFormat::kRgb32f, result.normal);
+    labels.shading_normal = make_plane<float>(o.want_shading_normal, o, PixelFormat::kRgb32f, result.shading_normal);
+    labels.position = make_plane<float>(o.want_position, o, PixelFormat::kRgb32f, result.position);
+    labels.albedo = make_plane<float>(o.want_albedo, o, PixelFormat::kRgb32f, result.albedo);
+    labels.uv = make_plane<float>(o.want_uv, o, PixelFormat::kRg32f, result.uv);
+    make_plane<float>(o.want_motion, o, PixelFormat::kRgba32f, result.motion);
+    make_plane<std::uint32_t>(o.want_motion, o, PixelFormat::kU32, result.motion_seen);
+    targets.euclidean = o.euclidean_depth;
     return targets;
+}
+
+void finish_planes(const RenderOptions& options, RenderResult& result) {
+    if (options.want_alpha) {
+        const float* const linear = result.linear.data<float>();
+        float* const alpha = result.alpha.data<float>();
+        const auto pixels = static_cast<std::size_t>(options.width) * static_cast<std::size_t>(options.height);
+        for (std::size_t i = 0; i < pixels; ++i) alpha[i] = linear[4 * i + 3];
+    }
+    if (!options.want_linear) result.linear = {};
+    if (!options.want_primitive) result.primitive = {};
 }
 
 }  // namespace tessera

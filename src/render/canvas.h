@@ -1,5 +1,5 @@
 // The picture being made: linear radiance gathered over the samples, then developed into the result's
-// planes; and the label planes.
+// planes.
 #pragma once
 
 #include "raster/engine.h"
@@ -44,24 +44,15 @@ class Canvas {
 void develop_picture(const float* sums, float weight, const FilmView& film, const RenderOptions& options, Arena* arena,
                      const RasterTargets& targets);
 
-// What the pass of the labels saw, and how many pixels it labelled.
-struct LabelCounts {
-    VisibilityCounters counters;
-    std::uint64_t pixels;
-};
-
-// Depth and primitive planes, at the pixel centre, of the nearest surface with alpha of at least one
-// half.
-LabelCounts take_labels(ReferenceEngine& engine, const RunControl& control, const RasterTargets& targets);
-
 // Adds a pass' counters to the statistics. The culling counters are those of the first pass: the
 // others cull the same triangles again.
 void add_counters(RenderStats& stats, const VisibilityCounters& counters, bool first);
 void add_counters(RenderStats& stats, const RasterCounters& counters, bool first);
-// Of a picture of labels alone.
-void add_counters(RenderStats& stats, const LabelCounts& counts);
 
-// The planes that the options ask for, made where `result` does not have them yet; the others are let go.
+// The planes that the options ask for and those that they are made of, made where `result` does not have them yet; the
+// others are let go.
 RasterTargets make_planes(const RenderOptions& options, RenderResult& result);
+// Afterwards: fills the planes that are made of others, and lets go of those.
+void finish_planes(const RenderOptions& options, RenderResult& result);
 
 }  // namespace tessera

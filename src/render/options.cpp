@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
 #include <string>
 
 namespace tessera {
@@ -18,11 +19,18 @@ namespace {
 constexpr std::size_t kMostFragmentsPerTile = 512 * 64 * 64;
 
 // Depth, triangle and colour of every pixel while it is made, and the finished colour; a wide filter's
-// sums and its flag; a stage's numbers.
+// sums and its flag; a stage's numbers; planes of labels, and for motion what is seen at the other shots.
 std::uint64_t picture_bytes(const RenderOptions& o) {
     const auto pixels = static_cast<std::uint64_t>(o.width) * static_cast<std::uint64_t>(o.height);
-    return pixels *
-           (4 + 4 + 16 + 4 + (o.filter == PixelFilter::kBox ? 0 : 16 + 1) + (o.show == Stage::kPicture ? 0 : 4));
+    const auto count = [](std::initializer_list<bool> wanted) {
+        return static_cast<std::uint64_t>(std::count(wanted.begin(), wanted.end(), true));
+    };
+    const std::uint64_t labels = 4 * count({o.want_alpha, o.want_depth, o.want_primitive, o.want_node, o.want_material}) +
+                                 12 * count({o.want_normal, o.want_shading_normal, o.want_position, o.want_albedo}) +
+                                 8 * count({o.want_uv}) + 32 * count({o.want_motion}) +
+                                 16 * count({o.want_linear || o.want_alpha});
+    return pixels * (4 + 4 + 16 + 4 + (o.filter == PixelFilter::kBox ? 0 : 16 + 1) +
+                     (o.show == Stage::kPicture ? 0 : 4) + labels);
 }
 
 void check_stage(const RenderOptions& o) {
@@ -53,6 +61,7 @@ void check_options(const RenderOptions& o) {
                std::to_string(kMaxImageSide));
     if (o.engine > Engine::kReferenceTrace) refuse("unknown engine");
     if (o.encoding > Encoding::kLinear) refuse("unknown encoding");
+    if (o.label_space > LabelSpace::kOpenCvCamera) refuse("unknown space of labels");
     const int side = o.raster.tile_side;
     if (side != 0 && side != 32 && side != 64 && side != 128) refuse("tile sides are 32, 64 or 128 pixels");
     if (o.samples < 1 || o.samples > 256) refuse("samples must be 1 to 256");

@@ -7,6 +7,8 @@
 #include "raster/engine.h"
 #include "reference/engine.h"
 #include "render/canvas.h"
+#include "render/labels.h"
+#include "render/motion.h"
 #include "render/options.h"
 #include "render/shading_scene.h"
 #include "render/stage_picture.h"
@@ -28,7 +30,8 @@ struct Renderer::Impl {
         sample_plane.resize(filter->plane_floats());
     }
 
-    void draw(const View& view, const Moment& moment, RenderResult& result);
+    void draw(const Shot& now, const Shot& before, const Shot& after, RenderResult& result);
+    void see_other(const Shot& shot, const Watchdog& watchdog, OtherShot& other);
     void draw_tiles(const Watchdog& watchdog, Stopwatch& watch, RenderResult& result);
     void draw_reference(const Watchdog& watchdog, Stopwatch& watch, RenderResult& result);
 
@@ -38,7 +41,8 @@ struct Renderer::Impl {
     Arena arena;
     PreparedScene prepared;
     ShadingScene shading;
-    Frame frame;  // the latest
+    Frame frame;              // the latest
+    OtherShot before, after;  // that motion is measured to
     RasterEngine raster;
     // Of filters wider than the pixel: the sums, and the picture of one sample, linear RGBA.
     std::optional<FilterPass> filter;
@@ -52,14 +56,19 @@ Renderer::Renderer(const Scene& scene, const RenderOptions& options) {
     impl_ = std::make_unique<Impl>(scene, options);
 }
 
-void Renderer::Impl::draw(const View& view, const Moment& moment, RenderResult& result) {
+void Renderer::Impl::draw(const Shot& now, const Shot& earlier, const Shot& later, RenderResult& result) {
     const FpEnvironment exact;
     result.stats = {};
     Stopwatch watch(result.stats);
     const Watchdog watchdog(options);
+    const bool from = options.want_motion && earlier != now, to = options.want_motion && later != now;
+    if (from) see_other(earlier, watchdog, before);
+    if (to) see_other(later, watchdog, after);
+    if (from || to) watch.phase("other shots");
 
-    prepared.move_to(moment);
-    make_frame(prepared, view, options.width, options.height, frame);
+    prepared.move_to(now.moment);
+    frame.keep_nodes = options.want_motion;
+    make_frame(prepared, now.view, options.width, options.height, frame);
     shading.light(scene, frame, options);
     watch.phase("evaluate");
 
@@ -67,6 +76,12 @@ void Renderer::Impl::draw(const View& view, const Moment& moment, RenderResult& 
         draw_tiles(watchdog, watch, result);
     else
         draw_reference(watchdog, watch, result);
+    if (options.want_motion) {
+        measure_motion(frame, result.primitive.data<std::uint32_t>(), to ? &after : nullptr, from ? &before : nullptr,
+                       arena, {result.motion.data<float>(), result.motion_seen.data<std::uint32_t>()});
+        watch.phase("motion");
+    }
+    finish_planes(options, result);
 
     result.warnings = frame.warnings;
     result.warnings.insert(result.warnings.end(), warnings.begin(), warnings.end());
@@ -75,10 +90,30 @@ void Renderer::Impl::draw(const View& view, const Moment& moment, RenderResult& 
     watch.finish();
 }
 
+// What is to be seen at another shot.
+void Renderer::Impl::see_other(const Shot& shot, const Watchdog& watchdog, OtherShot& other) {
+    prepared.move_to(shot.moment);
+    other.frame.keep_nodes = true;
+    make_frame(prepared, shot.view, options.width, options.height, other.frame);
+    other.keep_positions();
+    shading.light(scene, other.frame, options);
+    other.seen.resize(static_cast<std::size_t>(options.width) * static_cast<std::size_t>(options.height));
+    RasterTargets targets;
+    targets.labels.triangle = other.seen.data();
+    if (options.engine == Engine::kRaster) {
+        raster.draw(other.frame, shading.context(),
+                    raster_settings(options, shading.film(options), watchdog.control(0, 0)), targets, arena);
+        return;
+    }
+    ReferenceEngine engine(other.frame, shading.context(), options.engine == Engine::kReferenceTrace, false);
+    take_labels(engine, other.frame, watchdog.control(0, 0), targets);
+}
+
 // The tile rasterizer: visibility, shading and film inside each tile. With a filter that is wider than
 // the pixel, linear pictures of one sample each, and the film after the last of them.
 void Renderer::Impl::draw_tiles(const Watchdog& watchdog, Stopwatch& watch, RenderResult& result) {
-    const RasterTargets targets = make_planes(options, result);
+    RasterTargets targets = make_planes(options, result);
+    set_label_space(options, frame, targets);
     RasterSettings settings = raster_settings(options, shading.film(options), watchdog.control(0, 1));
     result.stats.isa = settings.isa;
     result.stats.threads = arena.threads();
@@ -102,7 +137,7 @@ void Renderer::Impl::draw_tiles(const Watchdog& watchdog, Stopwatch& watch, Rend
         settings.samples.assign(1, positions[static_cast<std::size_t>(sample)]);
         settings.checkpoint = watchdog.control(sample, options.samples).checkpoint;
         draw(sample_targets, sample == 0);
-        sample_targets.distance = nullptr, sample_targets.triangle = nullptr;  // done with the first one
+        sample_targets.labels = {};  // done with the first one
         filter->add(sample, sample_plane.data(), watchdog.control(0, 0).checkpoint);
         watch.phase("filter");
     }
@@ -114,10 +149,11 @@ void Renderer::Impl::draw_tiles(const Watchdog& watchdog, Stopwatch& watch, Rend
 // The reference engines: pass by pass, everything in full.
 void Renderer::Impl::draw_reference(const Watchdog& watchdog, Stopwatch& watch, RenderResult& result) {
     const bool tracing = options.engine == Engine::kReferenceTrace;
-    if (tracing && !is_centred(frame.projection))
-        throw Error(ErrorCode::kUsage, "reference-trace needs a picture that is centred on the camera's axis");
+    if (tracing && !is_square(frame.projection))
+        throw Error(ErrorCode::kUsage, "reference-trace needs a picture that is square to the camera's axes");
     ReferenceEngine engine(frame, shading.context(), tracing, options.shadows);
-    const RasterTargets targets = make_planes(options, result);
+    RasterTargets targets = make_planes(options, result);
+    set_label_space(options, frame, targets);
     watch.phase("build");
 
     if (targets.colors()) {
@@ -135,9 +171,12 @@ void Renderer::Impl::draw_reference(const Watchdog& watchdog, Stopwatch& watch, 
         canvas.develop(shading.film(options), targets, result.stats);
         watch.phase("film");
     }
-    if (targets.labels()) {
-        const LabelCounts labels = take_labels(engine, watchdog.control(0, targets.colors() ? 0 : 1), targets);
-        if (!targets.colors()) add_counters(result.stats, labels);
+    if (targets.labels.any()) {
+        const LabelCounts labels = take_labels(engine, frame, watchdog.control(0, targets.colors() ? 0 : 1), targets);
+        if (!targets.colors()) {
+            add_counters(result.stats, labels.counters, true);
+            result.stats.pixels_covered = labels.pixels;
+        }
         watch.phase("labels");
     }
 }
@@ -148,7 +187,13 @@ Renderer& Renderer::operator=(Renderer&&) noexcept = default;
 
 void Renderer::draw(RenderResult& result) { draw(impl_->options.view, result); }
 void Renderer::draw(const View& view, RenderResult& result) { draw(view, impl_->options.moment, result); }
-void Renderer::draw(const View& view, const Moment& moment, RenderResult& result) { impl_->draw(view, moment, result); }
+void Renderer::draw(const View& view, const Moment& moment, RenderResult& result) {
+    const Shot now{view, moment};
+    draw(now, options().motion_before.value_or(now), options().motion_after.value_or(now), result);
+}
+void Renderer::draw(const Shot& now, const Shot& before, const Shot& after, RenderResult& result) {
+    impl_->draw(now, before, after, result);
+}
 const RenderOptions& Renderer::options() const { return impl_->options; }
 
 RenderResult render(const Scene& scene, const RenderOptions& options) {

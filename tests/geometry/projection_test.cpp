@@ -45,7 +45,7 @@ TEST(HostCamera, PerspectiveFieldsAreThoseOfTheLens) {
     EXPECT_NEAR(f.projection.near, 0.5f, 1e-5f);
     EXPECT_NEAR(f.projection.scale_x, 1.7f / kAspect, 1e-5f);
     EXPECT_NEAR(f.projection.scale_y, 1.7f, 1e-5f);
-    EXPECT_TRUE(is_centred(f.projection));
+    EXPECT_TRUE(is_square(f.projection));
     // Tessera's own reversed matrix of the same lens.
     const double z = 0.5 / 19.5;
     EXPECT_NEAR(f.projection.clip_from_camera[10], z, 1e-6);
@@ -69,10 +69,12 @@ TEST(HostCamera, AFactorOnTheWholeMatrixChangesNothingButClipSpace) {
     EXPECT_NEAR(f.projection.scale_y, 1.7f, 1e-5f);
 }
 
-TEST(HostCamera, AShiftedLensIsNotCentred) {
+TEST(HostCamera, AShiftedLensIsSquareAndATurnedOneIsNot) {
     Mat4 p = gl_perspective(0.5f, 20);
     p(0, 2) = 0.2f;
-    EXPECT_FALSE(is_centred(host(p, look_at(kEye, kTarget, {0, 1, 0})).projection));
+    EXPECT_TRUE(is_square(host(p, look_at(kEye, kTarget, {0, 1, 0})).projection));
+    p(0, 1) = 0.2f;
+    EXPECT_FALSE(is_square(host(p, look_at(kEye, kTarget, {0, 1, 0})).projection));
 }
 
 // The contract with hosts: x, y and w of nodes without a transform are the host's floats.

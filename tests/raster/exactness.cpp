@@ -35,6 +35,16 @@ void expect_equal_planes(const RenderResult& reference, const RenderResult& r, c
     compare(reference.depth, r.depth, "depth");
     compare(reference.linear, r.linear, "radiance");
     compare(reference.color, r.color, "colour");
+    compare(reference.alpha, r.alpha, "alpha");
+    compare(reference.node, r.node, "nodes");
+    compare(reference.material, r.material, "materials");
+    compare(reference.normal, r.normal, "normals");
+    compare(reference.shading_normal, r.shading_normal, "normals of shading");
+    compare(reference.uv, r.uv, "texture coordinates");
+    compare(reference.position, r.position, "positions");
+    compare(reference.albedo, r.albedo, "albedo");
+    compare(reference.motion, r.motion, "motion");
+    compare(reference.motion_seen, r.motion_seen, "what is seen of motion");
 }
 
 void expect_equal(const RenderResult& reference, const RenderResult& r, const std::string& what) {
@@ -53,12 +63,18 @@ void expect_equal(const RenderResult& reference, const RenderResult& r, const st
     }
 }
 
+void want_labels(RenderOptions& o, bool wanted) {
+    o.want_depth = o.want_primitive = o.want_node = o.want_material = wanted;
+    o.want_normal = o.want_shading_normal = o.want_uv = o.want_position = o.want_albedo = wanted;
+}
+
 RenderOptions all_planes(int width, int height, int samples) {
     RenderOptions o;
     o.width = width;
     o.height = height;
     o.samples = samples;
-    o.want_linear = o.want_depth = o.want_primitive = true;
+    o.want_linear = o.want_alpha = true;
+    want_labels(o, true);
     return o;
 }
 

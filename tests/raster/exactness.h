@@ -22,6 +22,7 @@ void expect_equal_planes(const RenderResult& reference, const RenderResult& r, c
 // Planes, and the counters that both engines have.
 void expect_equal(const RenderResult& reference, const RenderResult& r, const std::string& what);
 
+void want_labels(RenderOptions& options, bool wanted);  // all but motion
 RenderOptions all_planes(int width, int height, int samples);
 // The reference's picture against the rasterizer's on every instruction set, threads and tiles in turn.
 void expect_exact(const Scene& scene, RenderOptions options, const std::string& what);

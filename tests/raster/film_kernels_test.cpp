@@ -95,7 +95,11 @@ TEST_P(FilmKernels, Labels) {
     Random random(73);
     const KernelWorld world(random);
     std::vector<InstanceView> instances(3);
-    for (std::uint32_t i = 0; i < 3; ++i) instances[i].first_triangle = 1000 * i;
+    for (std::uint32_t i = 0; i < 3; ++i) {
+        instances[i].first_triangle = 1000 * i;
+        instances[i].node = 70 + i;
+        instances[i].material = 5 - i;
+    }
     for (int round = 0; round < 120; ++round) {
         const int side = 32 << round % 3;
         const int width = round % 2 ? side : 1 + static_cast<int>(random.below(static_cast<std::uint32_t>(side)));
@@ -113,6 +117,9 @@ TEST_P(FilmKernels, Labels) {
         job.projection.orthographic = round % 5 == 0;
         job.projection.clip_from_camera[10] = round % 5 == 0 ? 0.1f : 0.01f;
         job.window = {side, width, height, 0, round % 8 < 4};
+        job.x0 = side * (round % 5);
+        job.y0 = side * (round % 7);
+        job.euclidean = round % 2 == 0;
         job.depth = depth.data();
         job.ordinal = round % 11 ? ordinal.data() : nullptr;  // without: a tile that shows nothing
         job.triangles = triangles.data();
@@ -121,25 +128,49 @@ TEST_P(FilmKernels, Labels) {
         const auto window = [&]<class T>(T) {
             return job.window.streamed ? Window<T>::on_lines(w, h) : Window<T>(w, h, 9);
         };
-        Window<float> distance_got = window(0.0f), distance_want = window(0.0f);
-        Window<std::uint32_t> number_got = window(0u), number_want = window(0u);
-        job.window.stride = 4 * number_got.stride;
+        struct Planes {
+            Window<float> distance;
+            Window<std::uint32_t> triangle, node, material;
+        };
+        const auto planes = [&] { return Planes{window(0.0f), window(0u), window(0u), window(0u)}; };
+        Planes got = planes(), want = planes();
+        job.window.stride = 4 * got.node.stride;
         const bool with_distance = round % 3 != 1, with_numbers = round % 3 != 2;
-        job.distance = with_distance ? distance_got.pixels.data() : nullptr;
-        job.triangle = with_numbers ? number_got.pixels.data() : nullptr;
-        kernels().label(job);
-        job.distance = with_distance ? distance_want.pixels.data() : nullptr;
-        job.triangle = with_numbers ? number_want.pixels.data() : nullptr;
-        scalar().label(job);
-        ASSERT_TRUE(same_bytes(distance_got.pixels, distance_want.pixels)) << round;
-        ASSERT_TRUE(same_bytes(number_got.pixels, number_want.pixels)) << round;
-        ASSERT_FALSE(distance_got.gaps_changed() || number_got.gaps_changed()) << round;
-        for (int y = 0; y < height && with_numbers; ++y)  // by definition
+        const auto run = [&](const RasterKernels& k, Planes& p) {
+            job.planes.distance = with_distance ? p.distance.pixels.data() : nullptr;
+            job.planes.triangle = with_numbers ? p.triangle.pixels.data() : nullptr;
+            job.planes.node = with_numbers ? p.node.pixels.data() : nullptr;
+            job.planes.material = with_numbers ? p.material.pixels.data() : nullptr;
+            k.label(job);
+        };
+        run(kernels(), got);
+        run(scalar(), want);
+        ASSERT_TRUE(same_bytes(got.distance.pixels, want.distance.pixels)) << round;
+        ASSERT_FALSE(got.distance.gaps_changed()) << round;
+        for (auto plane : {&Planes::triangle, &Planes::node, &Planes::material}) {
+            ASSERT_TRUE(same_bytes((got.*plane).pixels, (want.*plane).pixels)) << round;
+            ASSERT_FALSE((got.*plane).gaps_changed()) << round;
+        }
+        const PictureRays rays(job.projection);
+        for (int y = 0; y < height; ++y)  // by definition
             for (int x = 0; x < width; ++x) {
-                const std::uint32_t o = job.ordinal ? ordinal[place_of(x, y, side)] : 0;
-                const std::uint32_t number =
-                    number_got.pixels[static_cast<std::size_t>(y) * number_got.stride + static_cast<std::size_t>(x)];
-                ASSERT_EQ(number, o == 0 ? 0 : 1000 * triangles[o - 1].instance + triangles[o - 1].triangle + 1);
+                const std::size_t place = place_of(x, y, side);
+                const std::uint32_t o = job.ordinal ? ordinal[place] : 0;
+                const std::size_t at =
+                    static_cast<std::size_t>(y) * got.node.stride + static_cast<std::size_t>(x);
+                const TileTriangle t = o == 0 ? TileTriangle{0, 0} : triangles[o - 1];
+                if (with_numbers) {
+                    ASSERT_EQ(got.triangle.pixels[at], o == 0 ? 0 : 1000 * t.instance + t.triangle + 1);
+                    ASSERT_EQ(got.node.pixels[at], o == 0 ? 0 : 71 + t.instance);
+                    ASSERT_EQ(got.material.pixels[at], o == 0 ? 0 : 6 - t.instance);
+                }
+                if (!with_distance) continue;
+                float distance = std::numeric_limits<float>::infinity();
+                if (o != 0) distance = distance_of_depth(job.projection, depth[place]);
+                if (o != 0 && job.euclidean)
+                    distance = euclidean_distance(rays, distance, static_cast<float>(256 * (job.x0 + x) + 128),
+                                                  static_cast<float>(256 * (job.y0 + y) + 128));
+                ASSERT_EQ(got.distance.pixels[at], distance) << round;
             }
     }
 }

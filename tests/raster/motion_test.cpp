@@ -28,6 +28,9 @@ TEST(RasterMotion, ANI5_EveryMomentIsExact) {
         for (const double part : {0.0, 0.37, 1.0}) {
             RenderOptions o = all_planes(160, 120, 2);
             o.moment = {0, part * end};
+            o.want_motion = true;
+            o.motion_before = Shot{o.view, {0, (part - 0.1) * end}};
+            o.motion_after = Shot{o.view, {0, (part + 0.1) * end}};
             expect_exact(scene, o, name);
         }
     }

@@ -51,9 +51,9 @@ void run_product(const std::vector<Subject>& subjects) {
             o.raster.hierarchical_z = value(kHierarchicalZ) == 0;
             const auto planes = static_cast<Planes>(c[kPlanes]);
             o.raster.count_samples = value(kCounting) == 0;  // the code without it is another
-            o.want_linear = planes == kAll;
+            o.want_linear = o.want_alpha = planes == kAll;
             o.want_color = planes != kLabelsOnly;
-            o.want_depth = o.want_primitive = planes != kColorOnly;
+            want_labels(o, planes != kColorOnly);
             std::string what = s.name;
             what += std::string(", ") + name(o.isa);
             for (const int v : {o.samples, o.threads, o.raster.tile_side, int{o.raster.hierarchical_z}, int{planes},

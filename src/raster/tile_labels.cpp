@@ -1,0 +1,122 @@
+// Labels of a tile, at the pixel centre: of the nearest surface with alpha of at least one half.
+#include "raster/tile.h"
+
+#include <algorithm>
+
+namespace tessera {
+
+// `seen`: the centre is the sample whose visibility stands.
+void Tile::label(bool seen) {
+    clear_surface_labels();
+    if (triangle_count_ == 0) return write_labels(false);
+    const SamplePosition centre{128, 128};
+    if (!seen) {
+        const TileCounters before = counters;
+        find_visible(centre);
+        // Where colours are drawn the counters are theirs.
+        if (task_->targets.colors()) counters = before;
+    }
+    if (!fragments_.empty()) choose_label_fragments();
+    if (!task_->targets.colors())
+        for (const std::uint32_t o : ordinal_) pixels_covered += o != 0;
+    write_labels(true);
+    if (task_->labels.any()) label_surfaces();
+}
+
+// Lets transparent fragments that are solid enough hide what is behind them.
+void Tile::choose_label_fragments() {
+    make_records(task_->shading_batches.layouts);
+    point_pixel_.clear();
+    point_ordinal_.clear();
+    for (const Fragment& f : fragments_) {
+        point_pixel_.push_back(f.pixel);
+        point_ordinal_.push_back(f.ordinal);
+    }
+    shade_list({128, 128});
+    for (std::size_t i = 0; i < fragments_.size(); ++i) {  // the last one that is solid enough stays
+        if (!(point_color_[3][i] >= 0.5f)) continue;
+        ordinal_[fragments_[i].pixel] = fragments_[i].ordinal;
+        depth_[fragments_[i].pixel] = fragments_[i].depth;
+    }
+    fragments_.clear();
+}
+
+// From the tile's first pixel on.
+LabelPlanes Tile::label_planes() const {
+    const std::size_t first = picture_place(0);
+    LabelPlanes p = task_->targets.labels;
+    for (std::uint32_t** plane : {&p.triangle, &p.node, &p.material})
+        if (*plane) *plane += first;
+    if (p.distance) p.distance += first;
+    for (float** plane : {&p.normal, &p.shading_normal, &p.position, &p.albedo})
+        if (*plane) *plane += 3 * first;
+    if (p.uv) p.uv += 2 * first;
+    return p;
+}
+
+void Tile::write_labels(bool something) const {
+    LabelJob job{};
+    job.projection = task_->frame.projection;
+    job.x0 = x0_;
+    job.y0 = y0_;
+    job.euclidean = task_->targets.euclidean;
+    job.depth = depth_.data();
+    job.ordinal = something ? ordinal_.data() : nullptr;
+    job.triangles = triangles_.data();
+    job.instances = task_->frame.instances.data();
+    job.planes = label_planes();
+    job.window = window({job.planes.distance, job.planes.triangle, job.planes.node, job.planes.material});
+    task_->kernels.label(job);
+}
+
+void Tile::clear_surface_labels() const {
+    const LabelPlanes p = label_planes();
+    const auto stride = static_cast<std::size_t>(task_->frame.projection.width);
+    const auto clear = [&](float* plane, std::size_t numbers) {
+        for (std::size_t y = 0; plane && y < static_cast<std::size_t>(height_); ++y)
+            std::fill_n(plane + numbers * stride * y, numbers * static_cast<std::size_t>(width_), 0.0f);
+    };
+    for (float* plane : {p.normal, p.shading_normal, p.position, p.albedo}) clear(plane, 3);
+    clear(p.uv, 2);
+}
+
+// In batches of triangles that share a layout and, where it has a say, the material.
+void Tile::label_surfaces() {
+    const TileTask::Batches& batches = task_->label_batches;
+    make_records(batches.layouts);
+    std::vector<std::uint32_t>& shown = shown_batches_;
+    shown.clear();
+    for (const std::uint32_t* o = visible_.data(); *o != 0; ++o) {
+        const std::uint32_t batch = batches.batch_of[triangles_[*o - 1].instance];
+        if (shown.empty() || shown.back() != batch) shown.push_back(batch);
+    }
+    std::sort(shown.begin(), shown.end());
+    shown.erase(std::unique(shown.begin(), shown.end()), shown.end());
+    for (const std::uint32_t batch : shown) {
+        LabelSurfaceJob job{};
+        job.source = &task_->source;
+        job.material = &task_->shading.materials[task_->frame.instances[batch].material];
+        job.labels = task_->labels;
+        job.layout = batches.layouts[batch];
+        job.records = records_.data();
+        job.record_of = record_of_.data();
+        job.x0 = x0_;
+        job.y0 = y0_;
+        job.side = side_;
+        job.label_from_camera = task_->targets.label_from_camera;
+        job.picture_width = static_cast<std::size_t>(task_->frame.projection.width);
+        job.planes = label_planes();
+        job.ordinal = ordinal_.data();
+        if (shown.size() > 1) {
+            std::uint32_t* const own = batch_ordinals_.reserve(ordinal_.size());
+            for (std::size_t i = 0; i < ordinal_.size(); ++i) {
+                const std::uint32_t o = ordinal_[i];
+                own[i] = o != 0 && batches.batch_of[triangles_[o - 1].instance] == batch ? o : 0;
+            }
+            job.ordinal = own;
+        }
+        task_->kernels.label_surfaces(job);
+    }
+}
+
+}  // namespace tessera

@@ -1,0 +1,236 @@
+#include "render/motion.h"
+
+#include "shading/triangle_setup.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+namespace tessera {
+namespace {
+
+constexpr std::uint32_t kNoInstance = 0xffffffffu;
+
+glm::dvec4 clip_position(const glm::dmat4& m, const float* p) {
+    return m * glm::dvec4(static_cast<double>(p[0]), static_cast<double>(p[1]), static_cast<double>(p[2]), 1.0);
+}
+
+// The instances of one shot in another one.
+struct Moved {
+    std::vector<std::uint32_t> instance;  // kNoInstance where it is not drawn there
+    std::vector<char> stands;             // no vertex of it is elsewhere
+
+    Moved(const Frame& now, const OtherShot& other) {
+        std::size_t first = 0;  // of the same node, as both are in the order of the nodes
+        const std::vector<std::uint32_t>& nodes = other.frame.node_of_instance;
+        for (std::size_t i = 0; i < now.instances.size(); ++i) {
+            const std::uint32_t node = now.node_of_instance[i];
+            while (first < nodes.size() && nodes[first] < node) ++first;
+            std::uint32_t found = kNoInstance;
+            for (std::size_t j = first; j < nodes.size() && nodes[j] == node && found == kNoInstance; ++j)
+                if (other.frame.prepared[j] == now.prepared[i]) found = static_cast<std::uint32_t>(j);
+            instance.push_back(found);
+            const bool same_place = node < other.frame.node_to_clip.size() &&
+                                    other.frame.node_to_clip[node] == now.node_to_clip[node];
+            stands.push_back(same_place && !now.prepared[i]->deformed);
+        }
+    }
+};
+
+// A triangle at the other shot, in its picture.
+class OtherTriangles {
+  public:
+    explicit OtherTriangles(const OtherShot& other) : other_(other) {}
+
+    // Whether a surface of its own depth at `q` (1/256 pixel) is to be seen: nothing that the pixels around it show
+    // covers it and is nearer. Where none of it covers it, what the nearest pixel shows stands for what is between.
+    bool sees(std::uint32_t triangle, SamplePosition q) {
+        const ProjectionView& p = other_.frame.projection;
+        const int width = static_cast<int>(p.width), height = static_cast<int>(p.height);
+        const TriangleSetup own = setup(triangle);
+        if (!own.visible()) return false;
+        const float depth = own.depth.at(q.x, q.y);
+        if (!(depth > 0)) return false;
+        const int left = (q.x - 128) >> 8, top = (q.y - 128) >> 8;
+        const int nearest_x = q.x >> 8, nearest_y = q.y >> 8;
+        bool covered = false;
+        std::optional<std::uint32_t> nearest;
+        for (int y = std::max(top, 0); y <= std::min(top + 1, height - 1); ++y)
+            for (int x = std::max(left, 0); x <= std::min(left + 1, width - 1); ++x) {
+                const std::uint32_t number =
+                    other_.seen[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
+                                static_cast<std::size_t>(x)];
+                if (x == nearest_x && y == nearest_y) nearest = number;
+                if (number == 0) continue;
+                const TriangleSetup& t = setup(number - 1);
+                if (number - 1 != triangle && !covers(t, q)) continue;
+                covered = true;
+                // Neighbours of a surface meet it where snapping to 1/256 pixel says.
+                if (number - 1 != triangle && t.depth.at(q.x, q.y) > depth + slack(own, 2) + slack(t, 2)) return false;
+            }
+        if (covered || !nearest || *nearest == 0) return true;
+        const TriangleSetup& t = setup(*nearest - 1);
+        return t.depth.at(q.x, q.y) <= depth + slack(own, 256) + slack(t, 256);
+    }
+
+  private:
+    // How much depth may change over so many 1/256 pixels, and by rounding.
+    static float slack(const TriangleSetup& t, float steps) {
+        return steps * (std::fabs(t.depth.ddx) + std::fabs(t.depth.ddy)) + 1e-6f * t.depth.highest;
+    }
+
+    static bool covers(const TriangleSetup& t, SamplePosition q) {
+        bool left = false, right = false;
+        for (int i = 0; i < t.vertex_count; ++i) {
+            const std::int64_t side =
+                twice_area(t.polygon[i], t.polygon[(i + 1) % t.vertex_count], SnappedVertex{q.x, q.y});
+            left |= side < 0;
+            right |= side > 0;
+        }
+        return !(left && right);
+    }
+
+    // The latest few are remembered: neighbouring pixels show the same ones.
+    const TriangleSetup& setup(std::uint32_t triangle) {
+        Entry& entry = entries_[triangle % kEntries];
+        if (entry.triangle != triangle) {
+            entry.triangle = triangle;
+            const InstanceView& instance = other_.frame.instance_of(triangle);
+            setup_triangle(instance, triangle - instance.first_triangle, other_.frame.projection, entry.setup);
+        }
+        return entry.setup;
+    }
+
+    static constexpr std::uint32_t kEntries = 64;
+    struct Entry {
+        std::uint32_t triangle = 0xffffffffu;
+        TriangleSetup setup;
+    };
+    const OtherShot& other_;
+    std::vector<Entry> entries_{kEntries};
+};
+
+// Barycentric coordinates of the point of a triangle that is seen at (x, y) of normalised device coordinates. A sample
+// that only snapping put inside gets the nearest point, nearly. False for a triangle that is seen edge on.
+bool barycentrics(const glm::dvec4 (&v)[3], double x, double y, double (&b)[3]) {
+    double sum = 0;
+    for (int i = 0; i < 3; ++i) {
+        const glm::dvec4 &j = v[(i + 1) % 3], &k = v[(i + 2) % 3];
+        b[i] = x * (j.y * k.w - j.w * k.y) + y * (j.w * k.x - j.x * k.w) + (j.x * k.y - j.y * k.x);
+        sum += b[i];
+    }
+    if (!(std::fabs(sum) > 0)) return false;
+    double inside = 0;
+    for (double& part : b) {
+        part /= sum;
+        if (!(part > 0)) part = 0;
+        inside += part;
+    }
+    if (!(inside > 0) || !(inside - inside == 0)) return false;
+    for (double& part : b) part /= inside;
+    return true;
+}
+
+// Motion of the pixels of a row towards one other shot.
+class RowMotion {
+  public:
+    RowMotion(const Frame& now, const OtherShot& other, const Moved& moved)
+        : now_(now), other_(other), moved_(moved), triangles_(other) {}
+
+    // Writes x and y to `vector`; returns whether the point is seen there.
+    bool measure(std::uint32_t triangle, int x, int y, float* vector) {
+        find(triangle);
+        if (stands_) return sees({256 * x + 128, 256 * y + 128});
+        const double px = x + 0.5, py = y + 0.5;
+        const double w = static_cast<double>(now_.projection.width), h = static_cast<double>(now_.projection.height);
+        double b[3];
+        if (!barycentrics(here_, 2 * px / w - 1, 1 - 2 * py / h, b)) return false;
+        const glm::dvec4 p = there_[0] * b[0] + there_[1] * b[1] + there_[2] * b[2];
+        const double qx = (p.x / p.w + 1) * 0.5 * w, qy = (1 - p.y / p.w) * 0.5 * h;
+        if (!(p.w > 0) || !(std::fabs(qx) < 1e7 && std::fabs(qy) < 1e7)) return false;
+        vector[0] = static_cast<float>(qx - px);
+        vector[1] = static_cast<float>(qy - py);
+        const bool inside = qx >= 0 && qx < w && qy >= 0 && qy < h && p.z <= p.w && p.z >= 0;
+        return inside && sees({static_cast<std::int32_t>(qx * 256), static_cast<std::int32_t>(qy * 256)});
+    }
+
+  private:
+    // One that is not drawn there is a duplicate: the one that is stands at the same place.
+    bool sees(SamplePosition q) {
+        return there_instance_ == kNoInstance ||
+               triangles_.sees(other_.frame.instances[there_instance_].first_triangle + local_, q);
+    }
+
+    void find(std::uint32_t triangle) {
+        if (triangle == triangle_) return;
+        triangle_ = triangle;
+        const InstanceView& instance = now_.instance_of(triangle);
+        const auto i = static_cast<std::size_t>(&instance - now_.instances.data());
+        local_ = triangle - instance.first_triangle;
+        there_instance_ = moved_.instance[i];
+        stands_ = moved_.stands[i] != 0;
+        if (stands_) return;
+        const std::uint32_t node = now_.node_of_instance[i];
+        const float* const positions = other_.positions_of(*now_.prepared[i]);
+        for (std::size_t k = 0; k < 3; ++k) {
+            const std::size_t vertex = instance.mesh.triangles[3 * std::size_t{local_} + k];
+            here_[k] = clip_position(now_.node_to_clip[node], instance.mesh.positions + 3 * vertex);
+            there_[k] = clip_position(other_.frame.node_to_clip[node], positions + 3 * vertex);
+        }
+    }
+
+    const Frame& now_;
+    const OtherShot& other_;
+    const Moved& moved_;
+    OtherTriangles triangles_;
+    std::uint32_t triangle_ = 0xffffffffu, local_ = 0, there_instance_ = kNoInstance;
+    bool stands_ = false;
+    glm::dvec4 here_[3], there_[3];
+};
+
+}  // namespace
+
+void OtherShot::keep_positions() {
+    positions_.clear();
+    for (std::size_t i = 0; i < frame.instances.size(); ++i) {
+        const PreparedMesh& mesh = *frame.prepared[i];
+        if (!mesh.deformed) continue;
+        std::vector<float>& copy = positions_[&mesh];
+        if (copy.empty()) copy.assign(mesh.view.positions, mesh.view.positions + 3 * std::size_t{mesh.view.vertex_count});
+        frame.instances[i].mesh.positions = copy.data();
+    }
+}
+
+const float* OtherShot::positions_of(const PreparedMesh& mesh) const {
+    const auto found = positions_.find(&mesh);
+    return found == positions_.end() ? mesh.view.positions : found->second.data();
+}
+
+void measure_motion(const Frame& now, const std::uint32_t* primitive, const OtherShot* after, const OtherShot* before,
+                    Arena& arena, const MotionPlanes& planes) {
+    const auto width = static_cast<std::size_t>(now.projection.width),
+               height = static_cast<std::size_t>(now.projection.height);
+    std::fill_n(planes.vectors, 4 * width * height, 0.0f);
+    std::fill_n(planes.seen, width * height, 0u);
+    const OtherShot* const shots[2] = {after, before};
+    for (std::size_t s = 0; s < 2; ++s) {
+        std::optional<Moved> moved;
+        if (shots[s]) moved.emplace(now, *shots[s]);
+        constexpr std::size_t kRows = 8;
+        arena.for_each((height + kRows - 1) / kRows, [&](std::size_t part) {
+            std::optional<RowMotion> motion;
+            if (shots[s]) motion.emplace(now, *shots[s], *moved);
+            const std::size_t end = std::min((part + 1) * kRows, height);
+            for (std::size_t y = part * kRows; y < end; ++y)
+                for (std::size_t x = 0; x < width; ++x) {
+                    const std::size_t i = y * width + x;
+                    if (primitive[i] == 0) continue;
+                    const bool seen = !motion || motion->measure(primitive[i] - 1, static_cast<int>(x),
+                                                                 static_cast<int>(y), planes.vectors + 4 * i + 2 * s);
+                    planes.seen[i] |= seen ? 1u << s : 0u;
+                }
+        });
+    }
+}
+
+}  // namespace tessera
