@@ -146,7 +146,7 @@ struct RenderResult {
     // at motion_before (z, w). 0 where it is behind the eye there.
     Image motion;
     Image motion_seen;  // kU32: 1 where that point is to be seen at motion_after, plus 2 at motion_before
-    Image stage;      // the numbers of RenderOptions::show: kU32, or kF32 for kHiZ
+    Image stage;        // the numbers of RenderOptions::show: kU32, or kF32 for kHiZ
     RenderStats stats;
     std::vector<std::string> warnings;
 };

@@ -15,8 +15,8 @@ void store_rows(const glm::dmat4& m, int rows, float* out) {
         for (int c = 0; c < 4; ++c) out[4 * r + c] = static_cast<float>(m[c][r]);
 }
 
-// Sets the vertical angle of the largest picture around the axis that these intrinsics hold, for views that frame what is
-// visible; returns its aspect.
+// Sets the vertical angle of the largest picture around the axis that these intrinsics hold, for views that frame what
+// is visible; returns its aspect.
 double framing_lens(const Intrinsics& k, int width, int height, View& view) {
     const bool finite = k.fx - k.fx == 0 && k.fy - k.fy == 0 && k.cx - k.cx == 0 && k.cy - k.cy == 0;
     if (!finite || !(k.fx > 0 && k.fy > 0))

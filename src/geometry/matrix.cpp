@@ -136,11 +136,9 @@ bool is_rigid(const glm::dmat4& m) {
     constexpr double kRigid = 1e-4;
     for (int a = 0; a < 3; ++a)
         for (int b = a; b < 3; ++b)
-            if (!(std::abs(glm::dot(glm::dvec3(m[a]), glm::dvec3(m[b])) - (a == b ? 1 : 0)) <= kRigid))
-                return false;
+            if (!(std::abs(glm::dot(glm::dvec3(m[a]), glm::dvec3(m[b])) - (a == b ? 1 : 0)) <= kRigid)) return false;
     return determinant_sign(m) > 0 && m[0].w == 0 && m[1].w == 0 && m[2].w == 0 && m[3].w == 1;
 }
-
 
 glm::dmat4 placement_matrix(const glm::dvec3& eye, const glm::dvec3& target, const glm::dvec3& up) {
     glm::dvec3 back = unit(eye - target);

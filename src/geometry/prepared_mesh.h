@@ -22,7 +22,7 @@ struct PreparedMesh {
     TriangleList triangles;   // of primitive()
     Bounds3 bounds;           // object space
     MeshView view{};
-    bool deformed = false;  // its vertices are written over as the scene moves
+    bool deformed = false;                                // its vertices are written over as the scene moves
     std::uint32_t lowest_vertex = 0, highest_vertex = 0;  // that a triangle names
 };
 

@@ -99,8 +99,8 @@ TESSERA_INLINE void blend_samples(const SurfaceLayout& l, Mask mask, const Surfa
     to.inverse_w_ddy = select(mask, from.inverse_w_ddy, to.inverse_w_ddy);
 }
 
-// The sample of each lane's own triangle, from the records of a ShadeJob or LabelSurfaceJob. `used` are the lanes that count, at least one; `numbers` are the
-// ordinals one by one.
+// The sample of each lane's own triangle, from the records of a ShadeJob or LabelSurfaceJob. `used` are the lanes that
+// count, at least one; `numbers` are the ordinals one by one.
 template <class Job>
 TESSERA_INLINE void sample_lanes(const Job& job, const SurfaceLayout& l, const Uint& ordinals,
                                  const std::uint32_t* numbers, std::uint32_t used, Float x, Float y,

@@ -12,8 +12,8 @@ void label(const LabelJob& job);
 void label_surfaces(const LabelSurfaceJob& job);
 
 const RasterKernels& raster_kernels() {
-    static constexpr RasterKernels kKernels{&transform,    &setup,      &visibility,   &find_visible, &make_surfaces,
-                                            &shade_tile,   &shade_points, &develop_tile, &label,        &label_surfaces};
+    static constexpr RasterKernels kKernels{&transform,  &setup,        &visibility,   &find_visible, &make_surfaces,
+                                            &shade_tile, &shade_points, &develop_tile, &label,        &label_surfaces};
     return kKernels;
 }
 

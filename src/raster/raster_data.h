@@ -234,9 +234,9 @@ struct DevelopJob {
 
 // Planes of labels, null where not wanted. Misses: an infinite distance, all else 0.
 struct LabelPlanes {
-    float* distance;          // metres along the view axis, or to the eye
-    std::uint32_t* triangle;  // 1 + number in the frame
-    std::uint32_t *node, *material;  // 1 + index
+    float* distance;                                     // metres along the view axis, or to the eye
+    std::uint32_t* triangle;                             // 1 + number in the frame
+    std::uint32_t *node, *material;                      // 1 + index
     float *normal, *shading_normal, *position, *albedo;  // three numbers a pixel
     float* uv;                                           // two
 

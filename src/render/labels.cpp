@@ -75,11 +75,10 @@ LabelCounts take_labels(ReferenceEngine& engine, const Frame& frame, const RunCo
         if (planes.node) planes.node[i] = hit ? surfaces.instance(triangle).node + 1 : 0;
         if (planes.material) planes.material[i] = hit ? surfaces.instance(triangle).material + 1 : 0;
         if (planes.distance)
-            planes.distance[i] = hit ? distance_at(surfaces, triangle, at, targets.euclidean)
-                                     : std::numeric_limits<float>::infinity();
+            planes.distance[i] =
+                hit ? distance_at(surfaces, triangle, at, targets.euclidean) : std::numeric_limits<float>::infinity();
         if (!labels.any()) continue;
-        const LabelPoint<float> p =
-            hit ? surfaces.label(triangle, at, targets.label_from_camera) : LabelPoint<float>{};
+        const LabelPoint<float> p = hit ? surfaces.label(triangle, at, targets.label_from_camera) : LabelPoint<float>{};
         store(planes.normal, i, p.normal);
         store(planes.shading_normal, i, p.shading_normal);
         store(planes.position, i, p.position);

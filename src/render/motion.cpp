@@ -30,8 +30,8 @@ struct Moved {
             for (std::size_t j = first; j < nodes.size() && nodes[j] == node && found == kNoInstance; ++j)
                 if (other.frame.prepared[j] == now.prepared[i]) found = static_cast<std::uint32_t>(j);
             instance.push_back(found);
-            const bool same_place = node < other.frame.node_to_clip.size() &&
-                                    other.frame.node_to_clip[node] == now.node_to_clip[node];
+            const bool same_place =
+                node < other.frame.node_to_clip.size() && other.frame.node_to_clip[node] == now.node_to_clip[node];
             stands.push_back(same_place && !now.prepared[i]->deformed);
         }
     }
@@ -40,7 +40,7 @@ struct Moved {
 // A triangle at the other shot, in its picture.
 class OtherTriangles {
   public:
-    explicit OtherTriangles(const OtherShot& other) : other_(other) {}
+    OtherTriangles(const OtherShot& other, const MaterialView* materials) : other_(other), materials_(materials) {}
 
     // Whether a surface of its own depth at `q` (1/256 pixel) is to be seen: nothing that the pixels around it show
     // covers it and is nearer. Where none of it covers it, what the nearest pixel shows stands for what is between.
@@ -48,7 +48,8 @@ class OtherTriangles {
         const ProjectionView& p = other_.frame.projection;
         const int width = static_cast<int>(p.width), height = static_cast<int>(p.height);
         const TriangleSetup own = setup(triangle);
-        if (!own.visible()) return false;
+        const InstanceView& instance = other_.frame.instance_of(triangle);
+        if (!own.visible() || !(own.front(instance) || materials_[instance.material].double_sided)) return false;
         const float depth = own.depth.at(q.x, q.y);
         if (!(depth > 0)) return false;
         const int left = (q.x - 128) >> 8, top = (q.y - 128) >> 8;
@@ -57,9 +58,8 @@ class OtherTriangles {
         std::optional<std::uint32_t> nearest;
         for (int y = std::max(top, 0); y <= std::min(top + 1, height - 1); ++y)
             for (int x = std::max(left, 0); x <= std::min(left + 1, width - 1); ++x) {
-                const std::uint32_t number =
-                    other_.seen[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
-                                static_cast<std::size_t>(x)];
+                const std::uint32_t number = other_.seen[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
+                                                         static_cast<std::size_t>(x)];
                 if (x == nearest_x && y == nearest_y) nearest = number;
                 if (number == 0) continue;
                 const TriangleSetup& t = setup(number - 1);
@@ -107,6 +107,7 @@ class OtherTriangles {
         TriangleSetup setup;
     };
     const OtherShot& other_;
+    const MaterialView* materials_;
     std::vector<Entry> entries_{kEntries};
 };
 
@@ -134,8 +135,8 @@ bool barycentrics(const glm::dvec4 (&v)[3], double x, double y, double (&b)[3]) 
 // Motion of the pixels of a row towards one other shot.
 class RowMotion {
   public:
-    RowMotion(const Frame& now, const OtherShot& other, const Moved& moved)
-        : now_(now), other_(other), moved_(moved), triangles_(other) {}
+    RowMotion(const Frame& now, const OtherShot& other, const Moved& moved, const MaterialView* materials)
+        : now_(now), other_(other), moved_(moved), triangles_(other, materials) {}
 
     // Writes x and y to `vector`; returns whether the point is seen there.
     bool measure(std::uint32_t triangle, int x, int y, float* vector) {
@@ -196,7 +197,8 @@ void OtherShot::keep_positions() {
         const PreparedMesh& mesh = *frame.prepared[i];
         if (!mesh.deformed) continue;
         std::vector<float>& copy = positions_[&mesh];
-        if (copy.empty()) copy.assign(mesh.view.positions, mesh.view.positions + 3 * std::size_t{mesh.view.vertex_count});
+        if (copy.empty())
+            copy.assign(mesh.view.positions, mesh.view.positions + 3 * std::size_t{mesh.view.vertex_count});
         frame.instances[i].mesh.positions = copy.data();
     }
 }
@@ -206,8 +208,8 @@ const float* OtherShot::positions_of(const PreparedMesh& mesh) const {
     return found == positions_.end() ? mesh.view.positions : found->second.data();
 }
 
-void measure_motion(const Frame& now, const std::uint32_t* primitive, const OtherShot* after, const OtherShot* before,
-                    Arena& arena, const MotionPlanes& planes) {
+void measure_motion(const Frame& now, const std::uint32_t* primitive, const MaterialView* materials,
+                    const OtherShot* after, const OtherShot* before, Arena& arena, const MotionPlanes& planes) {
     const auto width = static_cast<std::size_t>(now.projection.width),
                height = static_cast<std::size_t>(now.projection.height);
     std::fill_n(planes.vectors, 4 * width * height, 0.0f);
@@ -219,7 +221,7 @@ void measure_motion(const Frame& now, const std::uint32_t* primitive, const Othe
         constexpr std::size_t kRows = 8;
         arena.for_each((height + kRows - 1) / kRows, [&](std::size_t part) {
             std::optional<RowMotion> motion;
-            if (shots[s]) motion.emplace(now, *shots[s], *moved);
+            if (shots[s]) motion.emplace(now, *shots[s], *moved, materials);
             const std::size_t end = std::min((part + 1) * kRows, height);
             for (std::size_t y = part * kRows; y < end; ++y)
                 for (std::size_t x = 0; x < width; ++x) {

@@ -5,6 +5,7 @@
 
 #include "core/parallel.h"
 #include "geometry/frame.h"
+#include "shading/material.h"
 
 #include <cstdint>
 #include <map>
@@ -33,7 +34,7 @@ struct MotionPlanes {
 };
 
 // `primitive` has 1 + number of the triangle in `now`, whose nodes are kept. Null: the same shot as `now`.
-void measure_motion(const Frame& now, const std::uint32_t* primitive, const OtherShot* after, const OtherShot* before,
-                    Arena& arena, const MotionPlanes& planes);
+void measure_motion(const Frame& now, const std::uint32_t* primitive, const MaterialView* materials,
+                    const OtherShot* after, const OtherShot* before, Arena& arena, const MotionPlanes& planes);
 
 }  // namespace tessera

@@ -25,10 +25,10 @@ std::uint64_t picture_bytes(const RenderOptions& o) {
     const auto count = [](std::initializer_list<bool> wanted) {
         return static_cast<std::uint64_t>(std::count(wanted.begin(), wanted.end(), true));
     };
-    const std::uint64_t labels = 4 * count({o.want_alpha, o.want_depth, o.want_primitive, o.want_node, o.want_material}) +
-                                 12 * count({o.want_normal, o.want_shading_normal, o.want_position, o.want_albedo}) +
-                                 8 * count({o.want_uv}) + 32 * count({o.want_motion}) +
-                                 16 * count({o.want_linear || o.want_alpha});
+    const std::uint64_t labels =
+        4 * count({o.want_alpha, o.want_depth, o.want_primitive, o.want_node, o.want_material}) +
+        12 * count({o.want_normal, o.want_shading_normal, o.want_position, o.want_albedo}) + 8 * count({o.want_uv}) +
+        32 * count({o.want_motion}) + 16 * count({o.want_linear || o.want_alpha});
     return pixels * (4 + 4 + 16 + 4 + (o.filter == PixelFilter::kBox ? 0 : 16 + 1) +
                      (o.show == Stage::kPicture ? 0 : 4) + labels);
 }

@@ -77,8 +77,9 @@ void Renderer::Impl::draw(const Shot& now, const Shot& earlier, const Shot& late
     else
         draw_reference(watchdog, watch, result);
     if (options.want_motion) {
-        measure_motion(frame, result.primitive.data<std::uint32_t>(), to ? &after : nullptr, from ? &before : nullptr,
-                       arena, {result.motion.data<float>(), result.motion_seen.data<std::uint32_t>()});
+        measure_motion(frame, result.primitive.data<std::uint32_t>(), shading.context().materials,
+                       to ? &after : nullptr, from ? &before : nullptr, arena,
+                       {result.motion.data<float>(), result.motion_seen.data<std::uint32_t>()});
         watch.phase("motion");
     }
     finish_planes(options, result);

@@ -156,8 +156,7 @@ TEST_P(FilmKernels, Labels) {
             for (int x = 0; x < width; ++x) {
                 const std::size_t place = place_of(x, y, side);
                 const std::uint32_t o = job.ordinal ? ordinal[place] : 0;
-                const std::size_t at =
-                    static_cast<std::size_t>(y) * got.node.stride + static_cast<std::size_t>(x);
+                const std::size_t at = static_cast<std::size_t>(y) * got.node.stride + static_cast<std::size_t>(x);
                 const TileTriangle t = o == 0 ? TileTriangle{0, 0} : triangles[o - 1];
                 if (with_numbers) {
                     ASSERT_EQ(got.triangle.pixels[at], o == 0 ? 0 : 1000 * t.instance + t.triangle + 1);

@@ -50,8 +50,7 @@ void expect_by_definition(const LabelSurfaceJob& job, const Planes& planes, int 
     SurfaceSample<float> sample;
     sample_planes(
         job.layout, px, py, [record](int i) { return record[i]; }, sample);
-    const SurfacePoint<float> s =
-        surface_point(job.layout, PictureRays(job.source->projection), sample, px, py, 1.0f);
+    const SurfacePoint<float> s = surface_point(job.layout, PictureRays(job.source->projection), sample, px, py, 1.0f);
     const LabelPoint<float> p = label_point(job.labels, job.layout, *job.material, kTurned, s);
     const auto same = [&](const GuardedArray<float>& plane, const Vec3T<float>& v) {
         const float numbers[3] = {v.x, v.y, v.z};
@@ -92,7 +91,8 @@ TEST_P(LabelKernels, BEY2_SameLabelsOfASurface) {
             scalar().make_surfaces({&source, 0, job.layout, triangles.data(),
                                     static_cast<std::uint32_t>(triangles.size()), records.data()});
             std::vector<std::uint32_t> record_of{0};
-            for (std::size_t i = 0; i < triangles.size(); ++i) record_of.push_back(static_cast<std::uint32_t>(i * floats));
+            for (std::size_t i = 0; i < triangles.size(); ++i)
+                record_of.push_back(static_cast<std::uint32_t>(i * floats));
             job.records = records.data();
             job.record_of = record_of.data();
             job.side = 32 << wanted % 3;
@@ -108,8 +108,8 @@ TEST_P(LabelKernels, BEY2_SameLabelsOfASurface) {
                 ordinal[i] = run;
             }
             job.ordinal = ordinal.data();
-            const std::size_t pixels = job.picture_width * static_cast<std::size_t>(job.side - 1) +
-                                       static_cast<std::size_t>(job.side);
+            const std::size_t pixels =
+                job.picture_width * static_cast<std::size_t>(job.side - 1) + static_cast<std::size_t>(job.side);
             Planes got(pixels), want(pixels);
             got.point(job);
             kernels().label_surfaces(job);

@@ -256,11 +256,11 @@ TEST(Filter, RAS7_LimitsAndCancelling) {
     for (const Engine engine : kEngines) {
         RenderOptions o = filtered(PixelFilter::kBox, 64, 64, 2);
         o.engine = engine;
-        o.max_bytes = 64 * 64 * 40;
+        o.max_bytes = 64 * 64 * 56;
         EXPECT_NO_THROW(render(scene, o));
         o.filter = PixelFilter::kGaussian;  // has a second plane
         EXPECT_EQ(refusal(scene, o), ErrorCode::kLimit);
-        o.max_bytes = 64 * 64 * 50;
+        o.max_bytes = 64 * 64 * 66;
         EXPECT_NO_THROW(render(scene, o));
 
         double last = 0;

@@ -184,10 +184,27 @@ TEST(HostCamera, GivesThePictureOfTheCameraItDescribes) {
     }
 }
 
-TEST(HostCamera, TheRayCasterRefusesShiftedLenses) {
+TEST(HostCamera, ShiftedLensesShowTheRayCasterTheSame) {
     const Scene scene = make_scene(wl::sphere(10));
     View view = matrices(wl::sphere_camera(96, 64));
     for (int c = 0; c < 4; ++c) (*view.clip_from_world)(0, c) += 0.1f * (*view.clip_from_world)(3, c);
+    RenderOptions o = all_planes(Engine::kRaster);
+    o.view = view;
+    const RenderResult raster = render(scene, o);
+    EXPECT_GT(raster.stats.pixels_covered, 1000u);
+    o.engine = Engine::kReferenceTrace;
+    o.shadows = false;
+    const RenderResult traced = render(scene, o);
+    int other = 0;
+    for (std::size_t i = 0; i < 96 * 64; ++i)
+        other += raster.primitive.data<std::uint32_t>()[i] != traced.primitive.data<std::uint32_t>()[i];
+    EXPECT_LT(other, 4);
+}
+
+TEST(HostCamera, TheRayCasterRefusesTurnedPictures) {
+    const Scene scene = make_scene(wl::sphere(10));
+    View view = matrices(wl::sphere_camera(96, 64));
+    for (int c = 0; c < 4; ++c) (*view.clip_from_world)(0, c) += 0.1f * (*view.clip_from_world)(1, c);
     RenderOptions o = all_planes(Engine::kRaster);
     o.view = view;
     EXPECT_GT(render(scene, o).stats.pixels_covered, 1000u);
