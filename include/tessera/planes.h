@@ -28,7 +28,8 @@ TESSERA_API std::size_t bytes_per_value(NpyType type);
 // (height, width, components). `values` are width * height * components values, row by row from the top
 // left, components together; kF2 as the bits of IEEE halves. Sides 1 .. kMaxImageSide, components 1 .. 64.
 TESSERA_API std::vector<std::byte> encode_npy(int width, int height, int components, NpyType type, const void* values);
-// An Image as it is: kF32 <f4 and kU32 <u4 of (h, w); kRgba8 |u1, kRgba16 <u2, kRgba32f <f4 of (h, w, 4).
+// An Image as it is: kF32 <f4 and kU32 <u4 of (h, w); kRg32f <f4 of (h, w, 2), kRgb32f of (h, w, 3); kRgba8 |u1,
+// kRgba16 <u2, kRgba32f <f4 of (h, w, 4).
 TESSERA_API std::vector<std::byte> encode_npy(const Image& image);
 
 struct NpyArray {
