@@ -13,6 +13,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -42,6 +43,8 @@ TESSERA_API bool is_npy(std::span<const std::byte> file);
 // big-endian and Fortran order are refused by name (kInput). Throws kLimit when width * height exceeds
 // `max_pixels`, before memory is taken; the file must be as long as its header says.
 TESSERA_API NpyArray decode_npy(std::span<const std::byte> file, std::uint64_t max_pixels = 1u << 28);
+// Reads and decodes a file; the error names it.
+TESSERA_API NpyArray read_npy(const std::string& path, std::uint64_t max_pixels = 1u << 28);
 // As compare_images(), over arrays of the same shape and type (kUsage otherwise); `tolerance` and errors
 // are in the unit of the values. The PSNR takes 1 as the peak of floats, all bits set of integers.
 TESSERA_API ImageDifference compare_arrays(const NpyArray& a, const NpyArray& b, double tolerance = 0);
@@ -53,7 +56,8 @@ TESSERA_API std::vector<std::byte> encode_grey_png(const Image& plane, const Png
 // kF32 metres as 16-bit grey: metres * scale (1000: millimetres), rounded half to even. 0 is where nothing
 // was hit (infinite or NaN), as depth cameras write it; a hit is at least 1. Throws kLimit, naming the
 // largest depth, when one comes out above 65535 or below 0.
-TESSERA_API std::vector<std::byte> encode_depth_png(const Image& depth, double scale = 1000);
+TESSERA_API std::vector<std::byte> encode_depth_png(const Image& depth, double scale = 1000,
+                                                    const PngOptions& options = {});
 // kU32 as 8-bit RGB, id = R + 256 G + 65536 B (as COCO's panoptic labels), when every id has 24 bits,
 // else as RGBA with A the highest byte. The colour type of the file tells which.
 TESSERA_API std::vector<std::byte> encode_id_png(const Image& ids, const PngOptions& options = {});
@@ -130,8 +134,8 @@ struct PaletteOptions {
 // exact. Else: median cut (Heckbert 1982) by the variance of the boxes, then k-means (Lloyd). Distances are of
 // display codes, premultiplied by alpha, with alpha as a fourth coordinate. Pixels of alpha 0 count as one colour
 // and have an entry of their own, the first. Without dithering every pixel takes its nearest entry, the lower of two.
-// Dithering hands the error of an opaque pixel on in linear light, row by row to and fro, so that a
-// flat area keeps the mean of its light. Exact in integers.
+// Dithering hands the error of an opaque pixel on in linear light, row by row to and fro, so that an area keeps the
+// mean of its light as far as entries can mix it. Exact in integers.
 TESSERA_API IndexedImage make_palette(const Image& image, const PaletteOptions& options = {});
 
 }  // namespace tessera

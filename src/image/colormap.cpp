@@ -36,7 +36,7 @@ constexpr Rgba8 color_of_id(std::uint32_t id) {
     // Hue, saturation and value as in Smith 1978, in 1/255: `rise` along one of the six edges of the circle.
     const std::uint64_t turn = std::uint64_t{id * 0x9e3779b9u} * 6;
     const auto edge = static_cast<unsigned>(turn >> 32), rise = static_cast<unsigned>(turn >> 24 & 0xff);
-    const unsigned high = 255 - 35 * (mixed & 3), low = high * (mixed >> 2 & 3) / 6;
+    const unsigned high = 150 + 105 * (mixed & 0xff) / 255, low = high * (mixed >> 8 & 0xff) / 510;
     const auto up = static_cast<std::uint8_t>(low + (high - low) * rise / 255);
     const auto down = static_cast<std::uint8_t>(high - (high - low) * rise / 255);
     const auto h = static_cast<std::uint8_t>(high), l = static_cast<std::uint8_t>(low);

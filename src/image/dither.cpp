@@ -26,7 +26,9 @@ struct Scale {
     }
     Light light_of(Rgba8 c) const { return {light[c.r], light[c.g], light[c.b]}; }
     Rgba8 color_of(const Light& l) const {
-        const auto code_of = [&](std::size_t k) { return code[static_cast<std::size_t>(l[k])]; };
+        const auto code_of = [&](std::size_t k) {
+            return code[static_cast<std::size_t>(std::clamp(l[k], std::int32_t{0}, kWhite))];
+        };
         return {code_of(0), code_of(1), code_of(2), 255};
     }
 };
@@ -53,10 +55,24 @@ class OpaqueSearch {
     std::vector<Answer> known_;
 };
 
+// The largest step from an entry's light to the next higher, by channel. Where entries can mix a colour,
+// errors stay below; where they cannot, error must not pile up without end.
+Light largest_gaps(std::span<const Rgba8> entries, const Scale& scale) {
+    Light gaps{};
+    for (std::size_t k = 0; k < gaps.size(); ++k) {
+        std::vector<std::int32_t> values;
+        for (const Rgba8& entry : entries) values.push_back(scale.light_of(entry)[k]);
+        std::sort(values.begin(), values.end());
+        for (std::size_t i = 1; i < values.size(); ++i) gaps[k] = std::max(gaps[k], values[i] - values[i - 1]);
+    }
+    return gaps;
+}
+
 }  // namespace
 
 std::vector<std::uint8_t> dither(const Image& image, std::span<const Rgba8> entries) {
     const Scale scale;
+    const Light gaps = largest_gaps(entries, scale);
     const PaletteSearch search(entries);
     OpaqueSearch opaque(entries);
     const auto width = static_cast<std::ptrdiff_t>(image.width());
@@ -79,12 +95,11 @@ std::vector<std::uint8_t> dither(const Image& image, std::span<const Rgba8> entr
             const auto at = static_cast<std::size_t>(x + 1);
             const auto ahead = static_cast<std::size_t>(x + 1 + step), behind = static_cast<std::size_t>(x + 1 - step);
             Light wanted = scale.light_of(pixel);
-            for (std::size_t k = 0; k < 3; ++k)
-                wanted[k] = std::clamp(wanted[k] + ((here[at][k] + 8) >> 4), std::int32_t{0}, kWhite);
+            for (std::size_t k = 0; k < 3; ++k) wanted[k] += (here[at][k] + 8) >> 4;
             index = opaque.nearest(scale.color_of(wanted));
             const Light given = scale.light_of(entries[index]);
             for (std::size_t k = 0; k < 3; ++k) {
-                const std::int32_t error = wanted[k] - given[k];
+                const std::int32_t error = std::clamp(wanted[k] - given[k], -gaps[k], gaps[k]);
                 here[ahead][k] += 7 * error;
                 below[behind][k] += 3 * error, below[at][k] += 5 * error, below[ahead][k] += error;
             }

@@ -67,7 +67,7 @@ std::vector<std::byte> encode_grey_png(const Image& plane, const PngOptions& opt
     return write_grey(plane, grey, options.level);
 }
 
-std::vector<std::byte> encode_depth_png(const Image& depth, double scale) {
+std::vector<std::byte> encode_depth_png(const Image& depth, double scale, const PngOptions& options) {
     check_format(depth, PixelFormat::kF32, "a depth PNG takes a plane of floats");
     if (!(scale > 0) || !std::isfinite(scale))
         throw Error(ErrorCode::kUsage, "the scale of a depth PNG must be positive and finite");
@@ -87,7 +87,7 @@ std::vector<std::byte> encode_depth_png(const Image& depth, double scale) {
     if (farthest * scale >= kLargestGrey + 0.5)
         throw Error(ErrorCode::kLimit, "the largest depth, " + shown(farthest) + " m, does not fit 16 bits at " +
                                            shown(scale) + " per metre");
-    return write_grey(depth, grey, PngOptions{}.level);
+    return write_grey(depth, grey, options.level);
 }
 
 std::vector<std::byte> encode_id_png(const Image& ids, const PngOptions& options) {

@@ -142,7 +142,8 @@ Header parse_header(std::string_view content) {
 
 // Where the header begins in the file, and its length.
 std::span<const std::byte> find_header(std::span<const std::byte> file) {
-    if (!is_npy(file) || file.size() < 12) refuse("truncated");
+    if (!is_npy(file)) throw Error(ErrorCode::kInput, "not a NumPy array");
+    if (file.size() < 12) refuse("truncated");
     const auto major = static_cast<unsigned>(file[6]), minor = static_cast<unsigned>(file[7]);
     if (major < 1 || major > 3 || minor != 0)
         refuse("version " + std::to_string(major) + "." + std::to_string(minor) + "; 1.0, 2.0 and 3.0 can be read");
@@ -236,6 +237,15 @@ NpyArray decode_npy(std::span<const std::byte> file, std::uint64_t max_pixels) {
     array.type = header.type;
     array.values.assign(values.begin(), values.end());
     return array;
+}
+
+NpyArray read_npy(const std::string& path, std::uint64_t max_pixels) {
+    const std::vector<std::byte> file = read_picture_file(path);
+    try {
+        return decode_npy(file, max_pixels);
+    } catch (const Error& e) {
+        throw Error(e.code(), e.message(), path, e.location());
+    }
 }
 
 }  // namespace tessera
