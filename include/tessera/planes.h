@@ -22,6 +22,7 @@ namespace tessera {
 // --- NumPy arrays (.npy) ----------------------------------------------------------------------
 
 enum class NpyType : std::uint8_t { kU1, kU2, kU4, kF2, kF4 };  // |u1 <u2 <u4 <f2 <f4
+TESSERA_API const char* name(NpyType type);                     // as above
 // Bytes of one value: 1, 2, 4, 2, 4.
 TESSERA_API std::size_t bytes_per_value(NpyType type);
 

@@ -3,6 +3,7 @@
 
 #include <tessera/error.h>
 #include <tessera/image.h>
+#include <tessera/planes.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -20,16 +21,7 @@ constexpr std::uint64_t kMaxFileBytes = std::uint64_t{1} << 31;
     throw Error(ErrorCode::kInput, "not a picture that can be read (PNG or JPEG)");
 }
 
-std::string lower_case_extension(const std::string& path) {
-    std::string e = std::filesystem::path(path).extension().string();
-    for (char& c : e)
-        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-    return e;
-}
-
-}  // namespace
-
-std::vector<std::byte> read_picture_file(const std::string& path) {
+std::vector<std::byte> read_file(const std::string& path) {
     std::error_code error;
     if (std::filesystem::is_directory(path, error)) throw Error(ErrorCode::kInput, "is a folder, not a picture", path);
     std::ifstream in(path, std::ios::binary);
@@ -46,6 +38,24 @@ std::vector<std::byte> read_picture_file(const std::string& path) {
     }
     if (in.bad()) throw Error(ErrorCode::kInput, "cannot read", path);
     return bytes;
+}
+
+std::string lower_case_extension(const std::string& path) {
+    std::string e = std::filesystem::path(path).extension().string();
+    for (char& c : e)
+        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+    return e;
+}
+
+}  // namespace
+
+NpyArray read_npy(const std::string& path, std::uint64_t max_pixels) {
+    const std::vector<std::byte> file = read_file(path);
+    try {
+        return decode_npy(file, max_pixels);
+    } catch (const Error& e) {
+        throw Error(e.code(), e.message(), path, e.location());
+    }
 }
 
 void check_image_size(std::uint64_t width, std::uint64_t height, std::uint64_t max_pixels) {
@@ -71,7 +81,7 @@ Image decode_image(std::span<const std::byte> file, std::uint64_t max_pixels, bo
 }
 
 Image read_image(const std::string& path, std::uint64_t max_pixels, bool keep_16_bit) {
-    const std::vector<std::byte> file = read_picture_file(path);
+    const std::vector<std::byte> file = read_file(path);
     try {
         return decode_image(file, max_pixels, keep_16_bit);
     } catch (const Error& e) {

@@ -29,9 +29,6 @@ Image decode_jpeg(std::span<const std::byte> file, std::uint64_t max_pixels);
 // sides that a header claims, before anything is allocated for them.
 void check_image_size(std::uint64_t width, std::uint64_t height, std::uint64_t max_pixels);
 
-// A whole file of at most 2 GiB; throws kInput and kLimit, naming it.
-std::vector<std::byte> read_picture_file(const std::string& path);
-
 // Writes `bytes` to `path` so that no half-written file is ever seen there: to a temporary file
 // beside it, then renamed. Devices, pipes and the like are written directly. Throws kOutput, naming
 // the file; the temporary file is then gone and an old file at `path` is untouched.

@@ -163,6 +163,11 @@ std::size_t bytes_per_value(NpyType type) {
     return kSizes[i];
 }
 
+const char* name(NpyType type) {
+    bytes_per_value(type);  // refuses what is none
+    return kNames[static_cast<std::size_t>(type)].data();
+}
+
 bool is_npy(std::span<const std::byte> file) {
     return file.size() >= kMagic.size() && std::memcmp(file.data(), kMagic.data(), kMagic.size()) == 0;
 }
@@ -237,15 +242,6 @@ NpyArray decode_npy(std::span<const std::byte> file, std::uint64_t max_pixels) {
     array.type = header.type;
     array.values.assign(values.begin(), values.end());
     return array;
-}
-
-NpyArray read_npy(const std::string& path, std::uint64_t max_pixels) {
-    const std::vector<std::byte> file = read_picture_file(path);
-    try {
-        return decode_npy(file, max_pixels);
-    } catch (const Error& e) {
-        throw Error(e.code(), e.message(), path, e.location());
-    }
 }
 
 }  // namespace tessera
