@@ -1,5 +1,6 @@
 // `tessera diff`: how far two pictures are apart; exit code 3 when too far.
 #include "cli/commands.h"
+#include "cli/diff_arrays.h"
 #include "cli/exit_code.h"
 #include "cli/files.h"
 #include "cli/json_writer.h"
@@ -78,6 +79,10 @@ int run(const DiffArguments& arguments) {
     if (!picture.empty() && !picture.ends_with(".png") && !picture.ends_with(".PNG") && !picture.starts_with("/dev/"))
         refuse("--output", "'" + picture + "' does not end in .png");
     if (!picture.empty()) check_writable(picture);
+    if (is_array(arguments.first) || is_array(arguments.second)) {
+        if (!picture.empty()) refuse("--output", "arrays have no picture of their differences");
+        return diff_arrays(arguments.first, arguments.second, v.tolerance, v.allowed, max_pixels, arguments.json);
+    }
 
     // Two 16-bit pictures are compared as such, any other pair as 8 bits.
     Image a = read_image(arguments.first, max_pixels, true), b = read_image(arguments.second, max_pixels, true);
@@ -106,12 +111,14 @@ int run(const DiffArguments& arguments) {
 Command add_diff_command(CLI::App& application) {
     CLI::App* app = application.add_subcommand("diff", "Compare two pictures; exit code 3 when they differ");
     auto arguments = std::make_shared<DiffArguments>();
-    app->add_option("first", arguments->first, "picture (.png, .jpg)")->required()->option_text("");
-    app->add_option("second", arguments->second, "picture to compare with it")->required()->option_text("");
+    app->add_option("first", arguments->first, "picture (.png, .jpg) or array (.npy)")->required()->option_text("");
+    app->add_option("second", arguments->second, "picture or array to compare with it")->required()->option_text("");
     app->add_option("-o,--output", arguments->picture, "write a PNG of the first picture in grey, differences in red")
         ->option_text("FILE");
-    app->add_option("--tolerance", arguments->tolerance,
-                    "a pixel differs when a channel is off by more, in 1/255 (16-bit pictures: 1/65535; default 0)")
+    app->add_option(
+           "--tolerance", arguments->tolerance,
+           "a pixel differs when a channel is off by more, in 1/255 (16-bit pictures: 1/65535; arrays: their unit; "
+           "default 0)")
         ->option_text("N");
     app->add_option("--max-differing", arguments->max_differing, "so many pixels may differ (default 0)")
         ->option_text("N");

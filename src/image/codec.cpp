@@ -3,6 +3,7 @@
 
 #include <tessera/error.h>
 #include <tessera/image.h>
+#include <tessera/planes.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -47,6 +48,15 @@ std::string lower_case_extension(const std::string& path) {
 }
 
 }  // namespace
+
+NpyArray read_npy(const std::string& path, std::uint64_t max_pixels) {
+    const std::vector<std::byte> file = read_file(path);
+    try {
+        return decode_npy(file, max_pixels);
+    } catch (const Error& e) {
+        throw Error(e.code(), e.message(), path, e.location());
+    }
+}
 
 void check_image_size(std::uint64_t width, std::uint64_t height, std::uint64_t max_pixels) {
     const std::string claim = "a picture of " + std::to_string(width) + " x " + std::to_string(height) + " pixels";

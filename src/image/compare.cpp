@@ -1,7 +1,9 @@
 // How far two images are apart: counts and errors for people and scripts, and a picture of where.
 #include <tessera/error.h>
 #include <tessera/image.h>
+#include <tessera/planes.h>
 
+#include <bit>
 #include <cmath>
 #include <cstdlib>
 #include <limits>
@@ -28,11 +30,27 @@ double channel_error(Integer a, Integer b) {
     return a < b ? static_cast<double>(b - a) : static_cast<double>(a - b);
 }
 
+// An IEEE half. Every one is a float, too.
+struct Half {
+    std::uint16_t bits;
+};
+
+float value_of(Half half) {
+    const std::uint32_t sign = half.bits >> 15, exponent = half.bits >> 10 & 31, mantissa = half.bits & 1023;
+    if (exponent == 0) return (sign != 0 ? -0x1p-24f : 0x1p-24f) * static_cast<float>(mantissa);
+    const std::uint32_t widened = exponent == 31 ? 255 : exponent + 112;
+    return std::bit_cast<float>(sign << 31 | widened << 23 | mantissa << 13);
+}
+
+double channel_error(Half a, Half b) { return channel_error(value_of(a), value_of(b)); }
+
 // Sums run in pixel order. `peak` is the largest value of a channel, the signal of the PSNR.
 template <class T>
-ImageDifference compare(const Image& a, const Image& b, std::size_t channels, double peak, double tolerance) {
-    const T *p = a.data<T>(), *q = b.data<T>();
-    const std::size_t count = a.bytes().size() / sizeof(T);
+ImageDifference compare(std::span<const std::byte> a, std::span<const std::byte> b, std::size_t channels, double peak,
+                        double tolerance) {
+    const T *p = reinterpret_cast<const T*>(a.data()), *q = reinterpret_cast<const T*>(b.data());
+    const std::size_t count = a.size() / sizeof(T);
+    if (!(tolerance >= 0)) throw Error(ErrorCode::kUsage, "the tolerance must not be negative");
     ImageDifference d;
     double sum = 0, squares = 0;
     for (std::size_t i = 0; i < count; i += channels) {
@@ -56,24 +74,48 @@ ImageDifference compare(const Image& a, const Image& b, std::size_t channels, do
 
 ImageDifference compare_images(const Image& a, const Image& b, double tolerance) {
     check_same_shape(a, b);
-    if (!(tolerance >= 0)) throw Error(ErrorCode::kUsage, "the tolerance must not be negative");
+    const auto p = a.bytes(), q = b.bytes();
     switch (a.format()) {
         case PixelFormat::kRgba8:
-            return compare<std::uint8_t>(a, b, 4, 255, tolerance);
+            return compare<std::uint8_t>(p, q, 4, 255, tolerance);
         case PixelFormat::kRgba16:
-            return compare<std::uint16_t>(a, b, 4, 65535, tolerance);
+            return compare<std::uint16_t>(p, q, 4, 65535, tolerance);
         case PixelFormat::kRgba32f:
-            return compare<float>(a, b, 4, 1, tolerance);
+            return compare<float>(p, q, 4, 1, tolerance);
         case PixelFormat::kF32:
-            return compare<float>(a, b, 1, 1, tolerance);
+            return compare<float>(p, q, 1, 1, tolerance);
         case PixelFormat::kRg32f:
-            return compare<float>(a, b, 2, 1, tolerance);
+            return compare<float>(p, q, 2, 1, tolerance);
         case PixelFormat::kRgb32f:
-            return compare<float>(a, b, 3, 1, tolerance);
+            return compare<float>(p, q, 3, 1, tolerance);
         case PixelFormat::kU32:
-            return compare<std::uint32_t>(a, b, 1, std::numeric_limits<std::uint32_t>::max(), tolerance);
+            return compare<std::uint32_t>(p, q, 1, std::numeric_limits<std::uint32_t>::max(), tolerance);
     }
     throw Error(ErrorCode::kUsage, "unknown pixel format");
+}
+
+ImageDifference compare_arrays(const NpyArray& a, const NpyArray& b, double tolerance) {
+    if (a.width != b.width || a.height != b.height || a.components != b.components || a.type != b.type)
+        throw Error(ErrorCode::kUsage, "arrays of different shape or type");
+    const auto components = static_cast<std::size_t>(a.components);
+    const std::size_t bytes =
+        static_cast<std::size_t>(a.width) * static_cast<std::size_t>(a.height) * components * bytes_per_value(a.type);
+    if (a.values.size() != bytes || b.values.size() != bytes)
+        throw Error(ErrorCode::kUsage, "arrays whose values do not fill their shape");
+    switch (a.type) {
+        case NpyType::kU1:
+            return compare<std::uint8_t>(a.values, b.values, components, 255, tolerance);
+        case NpyType::kU2:
+            return compare<std::uint16_t>(a.values, b.values, components, 65535, tolerance);
+        case NpyType::kU4:
+            return compare<std::uint32_t>(a.values, b.values, components, std::numeric_limits<std::uint32_t>::max(),
+                                          tolerance);
+        case NpyType::kF2:
+            return compare<Half>(a.values, b.values, components, 1, tolerance);
+        case NpyType::kF4:
+            return compare<float>(a.values, b.values, components, 1, tolerance);
+    }
+    throw Error(ErrorCode::kUsage, "unknown type of values");
 }
 
 Image difference_picture(const Image& a, const Image& b, double tolerance) {

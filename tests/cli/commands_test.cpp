@@ -3,6 +3,7 @@
 #include "cli/run_command.h"
 
 #include <tessera/image.h>
+#include <tessera/planes.h>
 #include <tessera/version.h>
 
 #include <simdjson.h>
@@ -137,6 +138,46 @@ TEST_F(CliDiff, ThePictureMarksTheDifferencesRed) {
     const auto* equal = first + 4;
     EXPECT_EQ(equal[0], equal[1]);
     EXPECT_EQ(equal[1], equal[2]);
+}
+
+TEST_F(CliDiff, Fb1ArraysAreComparedInTheirUnit) {
+    const auto write = [&](const char* name, int width, int components, const std::vector<float>& values) {
+        const std::vector<std::byte> file =
+            tessera::encode_npy(width, static_cast<int>(values.size()) / width / components, components,
+                                tessera::NpyType::kF4, values.data());
+        std::ofstream(in_folder(name), std::ios::binary)
+            .write(reinterpret_cast<const char*>(file.data()), static_cast<std::streamsize>(file.size()));
+    };
+    write("a.npy", 2, 1, {1, 2, 3, std::numeric_limits<float>::infinity()});
+    write("b.npy", 2, 1, {1, 2.5, 3, std::numeric_limits<float>::infinity()});
+    write("c.npy", 2, 2, {1, 2, 3, 4});
+    const auto compare = [&](const char* first, const char* second, std::vector<std::string> more) {
+        more.insert(more.begin(), {"diff", in_folder(first), in_folder(second)});
+        return run_command(more);
+    };
+    EXPECT_EQ(compare("a.npy", "a.npy", {}).code, 0);
+    EXPECT_EQ(compare("a.npy", "b.npy", {"--tolerance", "0.5"}).code, 0);
+    EXPECT_EQ(compare("a.npy", "b.npy", {"--max-differing", "1"}).code, 0);
+    const Outcome run = compare("a.npy", "b.npy", {"--json", "--tolerance", "0.49"});
+    EXPECT_EQ(run.code, 3);
+    simdjson::dom::parser parser;
+    simdjson::dom::element json;
+    ASSERT_EQ(parser.parse(run.out).get(json), simdjson::SUCCESS) << run.out;
+    EXPECT_EQ(std::uint64_t(json["differing_pixels"]), 1u);
+    EXPECT_EQ(double(json["max_error"]), 0.5);
+    EXPECT_EQ(double(json["mean_error"]), 0.125);
+    const Outcome shapes = compare("a.npy", "c.npy", {});
+    EXPECT_EQ(shapes.code, 3);
+    EXPECT_EQ(shapes.out, "arrays differ: <f4 of 2x2 and <f4 of 2x1x2\n");
+    EXPECT_EQ(compare("a.npy", "a.png", {}).code, 2);
+    EXPECT_EQ(compare("a.npy", "b.npy", {"-o", in_folder("d.png")}).code, 2);
+    EXPECT_EQ(compare("a.npy", "no.npy", {}).code, 4);
+    EXPECT_EQ(compare("a.npy", "a.npy", {"--max-pixels", "3"}).code, 6);
+    std::ofstream(in_folder("bad.npy")) << "not an array";
+    const Outcome bad = compare("a.npy", "bad.npy", {});
+    EXPECT_EQ(bad.code, 4);
+    EXPECT_NE(bad.err.find("bad.npy"), std::string::npos) << bad.err;
+    EXPECT_EQ(bad.error_lines(), 1);
 }
 
 TEST_F(CliDiff, FailuresHaveTheirCodes) {
