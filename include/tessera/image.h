@@ -93,6 +93,7 @@ TESSERA_API Image read_image(const std::string& path, std::uint64_t max_pixels =
 struct PngOptions {
     int level = 1;                  // 0 (stored) .. 12 (smallest)
     bool drop_opaque_alpha = true;  // write RGB when every alpha is full
+    int threads = 0;                // 0: what the process may use; the bytes are the same
 };
 // kRgba8 becomes 8-bit, kRgba16 16-bit RGB(A); kF32 and kU32 are refused (kUsage).
 TESSERA_API std::vector<std::byte> encode_png(const Image& image, const PngOptions& options = {});

@@ -9,6 +9,7 @@
 #include <tessera/render.h>
 #include <tessera/renderer.h>
 #include <tessera/scene.h>
+#include <tessera/threads.h>
 #include <tessera/transform.h>
 #include <tessera/types.h>
 #include <tessera/version.h>

@@ -29,6 +29,10 @@ struct View {
     std::optional<float> yfov;             // radians; default 35 degrees
     std::optional<Intrinsics> intrinsics;  // in place of any lens
     bool frame_bounds = false;             // ignore the scene's cameras
+    // A turntable: the camera that was placed or framed has gone around the axis `up` by this angle (radians,
+    // counter-clockwise seen from above): around the target, or the middle of the visible bounds. Framing is
+    // then the same for every angle, and keeps all of them in the picture. Ignores the scene's cameras.
+    std::optional<double> turn;
     // For hosts that bring their own matrices and must match another renderer to the pixel: both or
     // neither, in place of all of the above. `clip_from_world` follows OpenGL (y up, z from -w at the
     // near plane to w at the far one); of its floats x, y and w come as they are, exactly so for nodes

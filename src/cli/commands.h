@@ -14,6 +14,8 @@ struct Command {
 };
 
 Command add_render_command(CLI::App& application);
+Command add_batch_command(CLI::App& application);
+Command add_merge_report_command(CLI::App& application);
 Command add_info_command(CLI::App& application);
 Command add_diff_command(CLI::App& application);
 Command add_bench_command(CLI::App& application);

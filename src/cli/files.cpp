@@ -1,5 +1,7 @@
 #include "cli/files.h"
 
+#include "cli/temporary_file.h"
+
 #include <tessera/error.h>
 
 #include <fcntl.h>
@@ -8,6 +10,8 @@
 
 #include <cerrno>
 #include <cstring>
+#include <filesystem>
+#include <system_error>
 
 namespace tessera::cli {
 namespace {
@@ -26,12 +30,6 @@ int write_all(int descriptor, std::span<const std::byte> data) {
         data = data.subspan(static_cast<std::size_t>(written));
     }
     return 0;
-}
-
-std::string folder_of(const std::string& path) {
-    const auto slash = path.rfind('/');
-    if (slash == std::string::npos) return ".";
-    return slash == 0 ? "/" : path.substr(0, slash);
 }
 
 bool is_special(const std::string& path) {
@@ -61,6 +59,42 @@ std::vector<std::byte> read_stdin(std::uint64_t max_bytes) {
     }
 }
 
+std::vector<std::byte> read_file(const std::string& path) {
+    const auto fail = [&](int error) {
+        throw Error(ErrorCode::kInput, std::string("cannot be read: ") + std::strerror(error), path);
+    };
+    const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+    if (descriptor < 0) fail(errno);
+    struct stat info {};
+    std::vector<std::byte> data;
+    if (::fstat(descriptor, &info) == 0 && S_ISREG(info.st_mode)) data.resize(static_cast<std::size_t>(info.st_size));
+    std::size_t used = 0;
+    int error = S_ISREG(info.st_mode) ? 0 : EINVAL;
+    while (error == 0 && used < data.size()) {
+        const ssize_t got = ::read(descriptor, data.data() + used, data.size() - used);
+        if (got == 0) break;
+        if (got > 0)
+            used += static_cast<std::size_t>(got);
+        else if (errno != EINTR)
+            error = errno;
+    }
+    ::close(descriptor);
+    if (error != 0) fail(error);
+    data.resize(used);
+    return data;
+}
+
+bool is_folder(const std::string& path) {
+    std::error_code unknown;
+    return std::filesystem::is_directory(path, unknown);
+}
+
+void make_folders_of(const std::string& path) {
+    std::error_code error;
+    std::filesystem::create_directories(folder_of(path), error);
+    if (error) fail_output(path, error.value());
+}
+
 void check_writable(const std::string& path) {
     if (path == "-") return;
     struct stat info {};
@@ -73,23 +107,16 @@ void check_writable(const std::string& path) {
 
 void write_output(const std::string& path, std::span<const std::byte> data) {
     if (path == "-") return write_directly(path, STDOUT_FILENO, data);
-    const bool special = is_special(path);
-    std::string name = special ? path : path + ".XXXXXX";
-    const int descriptor = special ? ::open(path.c_str(), O_WRONLY | O_CLOEXEC) : ::mkostemp(name.data(), O_CLOEXEC);
-    if (descriptor < 0) fail_output(path, errno);
-    int error = write_all(descriptor, data);
-    if (!special) {
-        // mkostemp makes files that only the owner may read; a picture gets the usual rights.
-        const mode_t mask = ::umask(0);
-        ::umask(mask);
-        if (error == 0 && ::fchmod(descriptor, 0666 & ~mask) != 0) error = errno;
+    if (is_special(path)) {
+        const int descriptor = ::open(path.c_str(), O_WRONLY | O_CLOEXEC);
+        if (descriptor < 0) fail_output(path, errno);
+        const int error = write_all(descriptor, data);
+        if (::close(descriptor) != 0 || error != 0) fail_output(path, error != 0 ? error : errno);
+        return;
     }
-    if (::close(descriptor) != 0 && error == 0) error = errno;
-    if (!special && error == 0 && ::rename(name.c_str(), path.c_str()) != 0) error = errno;
-    if (error != 0) {
-        if (!special) ::unlink(name.c_str());
-        fail_output(path, error);
-    }
+    TemporaryFile file(path);
+    write_directly(path, file.descriptor(), data);
+    file.publish();
 }
 
 void write_output(const std::string& path, std::string_view text) {

@@ -68,8 +68,9 @@ int parse_and_run(int argc, char** argv) {
     bool version = false;
     application.add_flag("-V,--version", version, "say version, instruction sets and compiler");
     application.require_subcommand(0, 1);
-    const Command commands[] = {add_render_command(application), add_info_command(application),
-                                add_diff_command(application), add_bench_command(application)};
+    const Command commands[] = {add_render_command(application),       add_batch_command(application),
+                                add_merge_report_command(application), add_info_command(application),
+                                add_diff_command(application),         add_bench_command(application)};
     application.footer(
         "`tessera COMMAND --help` lists a command's options.\n\n"
         "Exit codes: 0 fine, 1 internal fault, 2 usage, 3 pictures or counts differ, 4 input, 5 output,\n"
@@ -88,7 +89,8 @@ int parse_and_run(int argc, char** argv) {
     if (version) return print(version_text());
     for (const Command& command : commands)
         if (command.app->parsed()) return command.run();
-    throw Error(ErrorCode::kUsage, "which command? There are render, info, diff and bench; see tessera --help");
+    throw Error(ErrorCode::kUsage,
+                "which command? There are render, batch, merge-report, info, diff and bench; see tessera --help");
 }
 
 }  // namespace

@@ -1,7 +1,9 @@
 #include "cli/render_arguments.h"
 
+#include "cli/option_adder.h"
 #include "cli/parse.h"
 #include "cli/pattern.h"
+#include "cli/video.h"
 
 #include <tessera/error.h>
 
@@ -66,33 +68,30 @@ void parse_animation(const RenderArguments& a, RenderJob& job) {
     job.animation = a.animation;
     if (!a.time.empty()) job.time = parse_number("--time", a.time, -1e9, 1e9);
     job.skip_existing = a.skip_existing;
-    const double fps = parse_number("--fps", a.fps, 1e-3, 1e6);
-    if (a.frames.empty()) {
-        if (a.skip_existing) refuse("--skip-existing", "needs --frames");
-        if (has_place(a.output, "frame")) refuse("--output", "{frame} needs --frames");
+    job.frames = parse_frames(a.frames, a.fps, a.turntable);
+    if (!job.frames) {
+        if (a.skip_existing) refuse("--skip-existing", "needs --frames or --turntable");
+        if (has_place(a.output, "frame")) refuse("--output", "{frame} needs --frames or --turntable");
+        if (job.codec == Codec::kVideo) refuse("--output", "a video needs --frames or --turntable");
         return;
     }
-    if (job.time) refuse("--time", "excludes --frames");
-    const std::size_t dash = a.frames.find('-');
-    Frames frames;
-    frames.fps = fps;
-    frames.first = static_cast<long>(parse_integer("--frames", a.frames.substr(0, dash), 0, 9999999));
-    frames.last = dash == std::string::npos
-                      ? frames.first
-                      : static_cast<long>(parse_integer("--frames", a.frames.substr(dash + 1), 0, 9999999));
-    if (frames.last < frames.first) refuse("--frames", "ends before it begins");
-    if (a.output.empty() || a.output == "-" || !has_place(a.output, "frame"))
-        refuse("--output", "with --frames it must say where the number goes, as in frame_{frame:04}.png");
-    fill_pattern("--output", a.output, {{"frame", frames.first}});
-    job.frames = frames;
+    if (job.time && job.frames->plays) refuse("--time", "excludes --frames");
+    if (job.frames->turning && !a.camera.empty()) refuse("--turntable", "excludes --camera");
+    if (job.codec == Codec::kVideo) {
+        if (has_place(a.output, "frame")) refuse("--output", "a video is one file: it has no {frame}");
+        check_video(a.output, job.render.width, job.render.height, !job.render.background);
+    } else if (a.output.empty() || a.output == "-" || !has_place(a.output, "frame")) {
+        refuse("--output", "must say where the number of the picture goes, as in frame_{frame:04}.png");
+    }
 }
 
 Codec parse_codec(const std::string& output) {
     const std::string name = lower(output);
     if (output == "-" || output.empty() || ends_with(name, ".png")) return Codec::kPng;
     if (ends_with(name, ".jpg") || ends_with(name, ".jpeg")) return Codec::kJpeg;
+    if (is_video(output)) return Codec::kVideo;
     if (output.compare(0, 5, "/dev/") == 0) return Codec::kPng;
-    refuse("--output", "'" + output + "' does not end in .png, .jpg or .jpeg");
+    refuse("--output", "'" + output + "' does not end in .png, .jpg or .jpeg, nor in " + video_endings());
 }
 
 void check_outputs(const RenderArguments& a) {
@@ -116,22 +115,8 @@ Engine parse_engine(const std::string& text) {
                            {"reference-trace", Engine::kReferenceTrace}});
 }
 
-void add_render_options(CLI::App& app, RenderArguments& a) {
-    const auto option = [&app](const char* group, const char* names, std::string& value, const char* type,
-                               const char* help) {
-        // An empty value is refused by name; it would otherwise look as if the option were absent.
-        const auto not_empty = [](std::string& text) { return text.empty() ? std::string("is empty") : std::string(); };
-        CLI::Option* added = app.add_option(names, value, help)->group(group)->option_text(type);
-        added->check(CLI::Validator(not_empty, "", "not empty"))->multi_option_policy(CLI::MultiOptionPolicy::Throw);
-        return added;
-    };
-
-    option("Input and output", "scene", a.scene, "",
-           "scene file (.gltf, .glb, .obj, .ply, .stl, .zip), or - to read it from stdin")
-        ->required();
-    option("Input and output", "-o,--output", a.output, "FILE",
-           "picture to write: .png, .jpg or .jpeg; - streams PNG to stdout");
-    option("Input and output", "--stats", a.stats, "FILE", "write statistics as JSON to FILE, or to stdout with -");
+void add_picture_options(CLI::App& app, RenderArguments& a) {
+    const OptionAdder option(app);
     option("Input and output", "--quality", a.quality, "1..100", "quality of JPEG (default 92)");
     option("Input and output", "--png-level", a.png_level, "0..12", "0 stores, 12 is smallest and slowest (default 1)");
     option("Input and output", "--color-bits", a.color_bits, "R-G-B",
@@ -159,9 +144,9 @@ void add_render_options(CLI::App& app, RenderArguments& a) {
     option("Animation", "--animation", a.animation, "NAME|INDEX|all", "which one plays (default: the first)");
     option("Animation", "--frames", a.frames, "A-B",
            "pictures number A to B, at A/fps to B/fps seconds; -o then says where the number goes: f_{frame:04}.png");
+    option("Animation", "--turntable", a.turntable, "N",
+           "N views, number 0 to N-1, of a full turn around the scene; with --frames the animation plays meanwhile");
     option("Animation", "--fps", a.fps, "N", "frames per second (default 24)");
-    app.add_flag("--skip-existing", a.skip_existing, "with --frames: leave out pictures that are there already")
-        ->group("Animation");
 
     option("Camera", "--camera", a.camera, "NAME|INDEX", "one of the scene's cameras (default: the first)");
     option("Camera", "--eye", a.eye, "X,Y,Z", "stand here instead (default: three-quarter view of the whole)");
@@ -182,6 +167,20 @@ void add_render_options(CLI::App& app, RenderArguments& a) {
     option("Limits", "--max-memory", a.max_memory, "BYTES",
            "memory for the scene (default 1G) and the frame (default 4G)");
     option("Limits", "--timeout", a.timeout, "S", "give up after so many seconds (exit code 6)");
+}
+
+void add_render_options(CLI::App& app, RenderArguments& a) {
+    const OptionAdder option(app);
+    option("Input and output", "scene", a.scene, "",
+           "scene file (.gltf, .glb, .obj, .ply, .stl, .zip), or - to read it from stdin")
+        ->required();
+    option("Input and output", "-o,--output", a.output, "FILE",
+           "picture to write: .png, .jpg or .jpeg; - streams PNG to stdout; .mp4, .mov, .mkv, .webm or .gif: a video");
+    option("Input and output", "--stats", a.stats, "FILE", "write statistics as JSON to FILE, or to stdout with -");
+    add_picture_options(app, a);
+    app.add_flag("--skip-existing", a.skip_existing,
+                 "with --frames or --turntable: leave out pictures that are there already")
+        ->group("Animation");
 
     app.footer(
         "Examples:\n"
@@ -189,6 +188,7 @@ void add_render_options(CLI::App& app, RenderArguments& a) {
         "  tessera render model.glb -o - -s 256x256 --background none > thumbnail.png\n"
         "  tessera render room.gltf -o room.jpg --engine reference-trace --camera front --samples 16\n"
         "  tessera render robot.glb -o walk_{frame:03}.png --frames 0-47 --animation Walk\n"
+        "  tessera render model.glb -o turn.mp4 --turntable 72 -s 640x480\n"
         "  tessera render model.glb -o model.png --eye 3,2,4 --target 0,1,0 --fov 35 --stats model.json\n"
         "\nThe color_hash of --stats is the same on every machine, for every --isa and for every --threads.");
 }

@@ -5,6 +5,8 @@
 #include <tessera/load.h>
 #include <tessera/render.h>
 
+#include "cli/frames.h"
+
 #include <CLI/App.hpp>
 
 #include <array>
@@ -16,7 +18,7 @@ namespace tessera::cli {
 struct RenderArguments {
     std::string scene, output, stats;
     std::string size = "1024x768", engine = "raster", samples = "4", filter = "box", aov = "color";
-    std::string time, animation, frames, fps = "24", variant;
+    std::string time, animation, frames, fps = "24", turntable, variant;
     std::string camera, eye, target, up = "y", fov;
     std::string show, background = "white", exposure = "auto", tone_map = "neutral", encoding = "srgb", color_bits;
     std::string lighting = "auto", ambient;
@@ -29,14 +31,10 @@ struct RenderArguments {
 Engine parse_engine(const std::string& text);
 
 void add_render_options(CLI::App& app, RenderArguments& arguments);
+// Those about picture and machine, which other commands have, too.
+void add_picture_options(CLI::App& app, RenderArguments& arguments);
 
-enum class Codec { kPng, kJpeg };
-
-// Numbered pictures of an animation, at first / fps to last / fps seconds.
-struct Frames {
-    long first = 0, last = 0;
-    double fps = 24;
-};
+enum class Codec { kPng, kJpeg, kVideo };
 
 // The arguments with their meaning. `camera` and `animation` stay text: they name parts of the scene.
 struct RenderJob {

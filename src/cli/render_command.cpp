@@ -5,16 +5,19 @@
 #include "cli/files.h"
 #include "cli/parse.h"
 #include "cli/pattern.h"
+#include "cli/picture_file.h"
 #include "cli/render_arguments.h"
 #include "cli/report.h"
 #include "cli/scene_input.h"
+#include "cli/scene_setup.h"
 #include "cli/statistics.h"
+#include "cli/stopwatch.h"
+#include "cli/video.h"
 
 #include <tessera/tessera.h>
 
 #include <unistd.h>
 
-#include <chrono>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -23,42 +26,6 @@
 
 namespace tessera::cli {
 namespace {
-
-class Stopwatch {
-  public:
-    double milliseconds() const {
-        return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start_).count();
-    }
-
-  private:
-    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
-
-// Applies what the options say about the scene itself.
-void place_view(RenderJob& job, Scene& scene) {
-    View& view = job.render.view;
-    if (!job.camera.empty()) view.camera = find_camera(scene, job.camera);
-    if (job.z_is_up) {
-        turn_z_up(scene);
-        if (view.eye) view.eye = turn_z_up(*view.eye);
-        if (view.target) view.target = turn_z_up(*view.target);
-    }
-    if (view.eye && !view.target) {
-        const Bounds3 bounds = visible_bounds(scene);
-        view.target = bounds.empty() ? Vec3{} : (bounds.min + bounds.max) * 0.5f;
-        if (*view.target == *view.eye)
-            throw Error(ErrorCode::kUsage, "--eye: is the middle of the scene; give --target");
-    }
-}
-
-// Which moment of which animation, once the scene is there to ask.
-void choose_moment(RenderJob& job, const Scene& scene) {
-    if (job.animation.empty() && !job.time && !job.frames) return;
-    if (scene.animations.empty())
-        refuse(job.time ? "--time" : job.frames ? "--frames" : "--animation", "the scene has no animations");
-    job.render.moment.animation = job.animation.empty() ? 0 : find_animation(scene, job.animation);
-    job.render.moment.time = job.time.value_or(0);
-}
 
 // Calls `work`, whose rendering asks for the time; what it throws when it was cancelled becomes the option's error.
 template <class Work>
@@ -73,18 +40,16 @@ void within(Deadline& deadline, Work&& work) {
 }
 
 // Reduces, encodes and writes a picture. Returns the milliseconds that took.
-double write_picture(const RenderJob& job, RenderResult& result, const std::string& output) {
-    if (job.color_bits) {
-        const auto [red, green, blue] = *job.color_bits;
-        result.color = quantize_true_color(result.color, red, green, blue);
-    }
-    result.stats.color_hash = hash_pixels(result.color);
+double write_picture(const RenderJob& job, RenderResult& result, const std::string& output,
+                     std::optional<Video>& video) {
+    finish_color(job, result);
     const Stopwatch encoding;
     if (output.empty()) return 0;
-    PngOptions png;
-    png.level = job.png_level;
-    write_output(output,
-                 job.codec == Codec::kJpeg ? encode_jpeg(result.color, job.quality) : encode_png(result.color, png));
+    if (video) {
+        video->add(result.color);
+        return encoding.milliseconds();
+    }
+    write_output(output, encode_color(job, result));
     return encoding.milliseconds();
 }
 
@@ -105,20 +70,26 @@ class Sequence {
     }
 
     // Without --frames there is one.
-    long pictures() const { return job_.frames ? job_.frames->last - job_.frames->first + 1 : 1; }
+    long pictures() const { return job_.frames ? job_.frames->count() : 1; }
 
     void run(Deadline& deadline, CommandTimes times, const Stopwatch& total) {
         if (job_.timeout) job_.render.cancel = [&] { return deadline.expired(); };
         std::optional<Renderer> renderer;
         RenderResult result;
+        std::optional<Video> video;
+        if (job_.codec == Codec::kVideo)
+            video.emplace(output_of(arguments_.output, job_.frames->first),
+                          VideoOptions{job_.frames->fps, !job_.render.background}, job_.render.cancel);
         for (; drawn_ < pictures(); ++drawn_) {
             std::string output = arguments_.output;
             Moment moment = job_.render.moment;
+            View view = job_.render.view;
             if (job_.frames) {
                 const long frame = job_.frames->first + drawn_;
                 output = output_of(arguments_.output, frame);
-                moment.time = static_cast<double>(frame) / job_.frames->fps;
-                if (job_.skip_existing && ::access(output.c_str(), F_OK) == 0) continue;
+                moment = job_.frames->moment(moment, frame);
+                view = job_.frames->view(view, frame);
+                if (!video && job_.skip_existing && ::access(output.c_str(), F_OK) == 0) continue;
             }
             within(deadline, [&] {
                 if (!job_.frames) {
@@ -126,21 +97,22 @@ class Sequence {
                     return;
                 }
                 if (!renderer) renderer.emplace(scene_, job_.render);
-                renderer->draw(job_.render.view, moment, result);
+                renderer->draw(view, moment, result);
             });
-            if (drawn_ + 1 == pictures()) deadline.disarm();
+            if (drawn_ + 1 == pictures() && !video) deadline.disarm();
             bar_.clear();
             deadline.hold(true);
             result.warnings.insert(result.warnings.begin(), scene_.warnings.begin(), scene_.warnings.end());
             if (!arguments_.quiet && !reported_) report_warnings(input_name(arguments_.scene), result.warnings);
             reported_ = true;
             if (!arguments_.quiet && job_.render.show != Stage::kPicture) report_stage(job_.render, result);
-            times.encode_ms = write_picture(job_, result, output);
+            within(deadline, [&] { times.encode_ms = write_picture(job_, result, output, video); });
             times.total_ms = total.milliseconds();
             if (!arguments_.stats.empty())
                 statistics_.push_back(statistics_json(input_name(arguments_.scene), job_.render, result, times));
             deadline.hold(false);
         }
+        if (video) within(deadline, [&] { video->finish(); });
         deadline.disarm();
     }
 
@@ -172,14 +144,18 @@ int run(const RenderArguments& arguments) {
         check_writable(job.frames ? output_of(arguments.output, job.frames->first) : arguments.output);
     if (!arguments.stats.empty()) check_writable(arguments.stats);
 
+    if (job.codec == Codec::kVideo) {
+        const std::string output = output_of(arguments.output, job.frames->first);
+        if (job.skip_existing && ::access(output.c_str(), F_OK) == 0) return kFine;
+        find_ffmpeg(output);
+    }
+
     Deadline deadline(job.timeout, input_name(arguments.scene));
     CommandTimes times;
     const Stopwatch loading;
     Scene scene = load_input(arguments.scene, job.load);
     times.load_ms = loading.milliseconds();
-    if (!job.variant.empty()) choose_variant(scene, find_variant(scene, job.variant));
-    choose_moment(job, scene);
-    place_view(job, scene);
+    set_up(job, scene);
 
     Sequence sequence(job, scene, arguments);
     sequence.run(deadline, times, total);

@@ -3,14 +3,13 @@
 // oneTBB is neither limited nor joined. Exceptions thrown by a body reach the caller of for_each().
 #pragma once
 
+#include <tessera/threads.h>
+
 #include <cstddef>
 #include <functional>
 #include <memory>
 
 namespace tessera {
-
-// How many threads this process may use: its affinity mask and the cgroup's CPU quota, at least 1.
-int available_threads();
 
 class Arena {
   public:

@@ -134,6 +134,15 @@ std::vector<bool> PreparedScene::used_materials() const {
 }
 
 const PlacedCamera& PreparedScene::camera(const View& view, double aspect) {
+    if (!view.turn) return standing_camera(view, aspect);
+    // All of a turntable has one framing.
+    View first = view;
+    first.turn = 0;
+    turned_ = turned(standing_camera(first, aspect), to_dvec3(view.up), *view.turn);
+    return turned_;
+}
+
+const PlacedCamera& PreparedScene::standing_camera(const View& view, double aspect) {
     if (chosen_ && chosen_->aspect == aspect && chosen_->view == view) return chosen_->camera;
     bool framed = false;
     const PlacedCamera camera = choose_camera(scene_, transforms_, view, aspect, [&](const PointVisitor& visit) {

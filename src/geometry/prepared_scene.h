@@ -62,6 +62,7 @@ class PreparedScene {
     void place_nodes();
     void place(const Primitive& primitive, const PreparedMesh& mesh);
     void visit_animation(const PointVisitor& visit);
+    const PlacedCamera& standing_camera(const View& view, double aspect);
 
     struct ChosenCamera {
         View view;
@@ -83,6 +84,7 @@ class PreparedScene {
     std::map<const Primitive*, const PreparedMesh*> prepared_;
     std::map<std::pair<int, const Primitive*>, std::unique_ptr<DeformedMesh>> deformed_;
     std::optional<ChosenCamera> chosen_;
+    PlacedCamera turned_;
 };
 
 }  // namespace tessera

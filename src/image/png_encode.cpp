@@ -68,7 +68,7 @@ std::vector<std::byte> encode_png(const Image& image, const PngOptions& options,
 }
 
 std::vector<std::byte> encode_png(const Image& image, const PngOptions& options) {
-    Arena arena;
+    Arena arena(options.threads);
     return encode_png(image, options, arena);
 }
 

@@ -1,0 +1,73 @@
+#include "cli/batch_names.h"
+
+#include "cli/batch_arguments.h"
+#include "cli/parse.h"
+#include "cli/pattern.h"
+
+#include <tessera/error.h>
+
+namespace tessera::cli {
+namespace {
+
+[[noreturn]] void refuse_clash(const std::string& name, const std::string& first, const std::string& second) {
+    refuse("--output", first == second ? "'" + name + "' would be written twice, from " + first
+                                       : "'" + name + "' would be written from " + first + " and from " + second +
+                                             "; names can have {path}, {folder} and {extension} too");
+}
+
+}  // namespace
+
+std::string fixed_folder(const std::string& pattern) {
+    std::size_t place = 0;
+    while ((place = pattern.find('{', place)) != std::string::npos && pattern.compare(place, 2, "{{") == 0) place += 2;
+    const std::string front = pattern.substr(0, place);
+    return fill_pattern("--output", front.substr(0, front.find_last_of('/') + 1), {});
+}
+
+std::string safe_name(const std::string& name) {
+    std::string safe = name;
+    for (char& c : safe)
+        if (c == '/' || static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '_';
+    return safe.empty() || safe == "." || safe == ".." ? "_" : safe;
+}
+
+std::string output_name(const BatchJob& job, const SceneFile& scene, const std::string& camera,
+                        std::optional<long> frame) {
+    const std::string above = "../";
+    if ((scene.path + "/").find(above) == 0 && (has_place(job.pattern, "path") || has_place(job.pattern, "folder")))
+        refuse("--output",
+               "{path} and {folder} of " + scene.file + " lead out of the folder; name the folder it is in instead");
+    PatternValues values{{"model", scene.model},         {"path", scene.path},          {"folder", scene.folder},
+                         {"extension", scene.extension}, {"camera", safe_name(camera)}, {"aov", std::string("color")}};
+    if (frame) values["frame"] = *frame;
+    return fill_pattern("--output", job.pattern, values);
+}
+
+void check_names(const BatchJob& job, const std::vector<SceneFile>& scenes) {
+    // A camera that is not known yet is a name that no file has.
+    std::vector<std::string> cameras = job.cameras;
+    if (job.every_camera) cameras = {"\x01"};
+    if (cameras.empty()) cameras = {"default"};
+    const std::optional<Frames>& frames = job.render.frames;
+    const bool numbered = frames && job.render.codec != Codec::kVideo;
+    const auto pictures = static_cast<std::uint64_t>(numbered ? frames->count() : 1);
+    // Of very many pictures the first of each scene tell.
+    constexpr std::uint64_t kMany = std::uint64_t{1} << 20;
+    const bool all = pictures * cameras.size() * scenes.size() <= kMany;
+    std::unordered_map<std::string, std::size_t> owners;
+    for (std::size_t s = 0; s < scenes.size(); ++s)
+        for (const std::string& camera : cameras)
+            for (std::uint64_t i = 0; i < (all ? pictures : 1); ++i) {
+                const auto frame = numbered ? std::optional(frames->first + static_cast<long>(i)) : std::nullopt;
+                const auto [owner, is_new] = owners.try_emplace(output_name(job, scenes[s], camera, frame), s);
+                if (!is_new) refuse_clash(owner->first, scenes[owner->second].file, scenes[s].file);
+            }
+}
+
+void Claims::claim(const std::string& name, const std::string& scene) {
+    const std::lock_guard lock(mutex_);
+    const auto [owner, is_new] = owners_.try_emplace(name, scene);
+    if (!is_new && owner->second != scene) refuse_clash(name, owner->second, scene);
+}
+
+}  // namespace tessera::cli

@@ -1,0 +1,121 @@
+#include "cli/batch_run.h"
+
+#include "cli/batch_scene.h"
+#include "cli/statistics.h"
+#include "cli/stopwatch.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <mutex>
+#include <thread>
+#include <utility>
+
+namespace tessera::cli {
+namespace {
+
+// FNV-1a (64 bit) over the names, each ended by a zero.
+std::string list_hash(const std::vector<SceneFile>& scenes) {
+    std::uint64_t hash = 0xcbf29ce484222325u;
+    for (const SceneFile& scene : scenes)
+        for (std::size_t i = 0; i <= scene.file.size(); ++i)
+            hash = (hash ^ static_cast<unsigned char>(scene.file.c_str()[i])) * 0x100000001b3u;
+    char text[17];
+    std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(hash));
+    return text;
+}
+
+class Run {
+  public:
+    Run(const BatchJob& job, const std::vector<SceneFile>& scenes, const SceneDone& done)
+        : job_(job), scenes_(scenes), done_(done), shared_{job, {}, {}} {
+        for (std::size_t i = 0; i < scenes.size(); ++i)
+            if (job.shard_frames || job.shard.has(i)) mine_.push_back(i);
+        left_ = mine_.size();
+        workers_ = static_cast<int>(std::clamp<std::size_t>(mine_.size(), 1, static_cast<std::size_t>(job.in_flight)));
+    }
+
+    BatchReport run() {
+        const Stopwatch watch;
+        std::vector<std::thread> helpers;
+        for (int i = 1; i < workers_; ++i) helpers.emplace_back([this] { work(); });
+        work();
+        for (std::thread& helper : helpers) helper.join();
+        do_large_ones();
+
+        std::sort(report_.scenes.begin(), report_.scenes.end(),
+                  [](const SceneReport& a, const SceneReport& b) { return a.number < b.number; });
+        report_.list_scenes = scenes_.size();
+        report_.list_hash = list_hash(scenes_);
+        report_.shards = {job_.shard.index}, report_.shard_count = job_.shard.count;
+        report_.shard_by = job_.shard_frames ? "frame" : "scene";
+        report_.threads = job_.threads, report_.in_flight = workers_;
+        report_.wall_ms = watch.milliseconds();
+        report_.peak_rss_mb = peak_memory_mb();
+        return std::move(report_);
+    }
+
+  private:
+    void work() {
+        SceneWorker worker(shared_);
+        SceneShare share;
+        share.scene_bytes =
+            std::max<std::uint64_t>(1, job_.render.load.max_bytes / static_cast<std::uint64_t>(workers_));
+        share.frame_bytes =
+            std::max<std::uint64_t>(1, job_.render.render.max_bytes / static_cast<std::uint64_t>(workers_));
+        for (std::size_t number; take(number, share.threads);) {
+            SceneReport report = worker.run(scenes_[number], number, share);
+            const bool too_large = report.exit_code == kLimitReached && workers_ > 1;
+            finish(std::move(report), too_large);
+        }
+    }
+
+    // The next scene, and the threads for it: a fair part of them among the scenes that are left.
+    bool take(std::size_t& number, int& threads) {
+        const std::lock_guard lock(mutex_);
+        if (next_ == mine_.size()) return false;
+        const auto rivals = static_cast<int>(std::min(left_, static_cast<std::size_t>(workers_)));
+        threads = std::max(1, job_.threads / rivals);
+        number = mine_[next_++];
+        return true;
+    }
+
+    void finish(SceneReport report, bool too_large) {
+        const std::lock_guard lock(mutex_);
+        if (too_large) {
+            large_.push_back(static_cast<std::size_t>(report.number));
+            return;
+        }
+        --left_;
+        done_(report, left_);
+        report_.scenes.push_back(std::move(report));
+    }
+
+    void do_large_ones() {
+        std::sort(large_.begin(), large_.end());
+        const SceneShare all{job_.threads, job_.render.load.max_bytes, job_.render.render.max_bytes};
+        for (const std::size_t number : std::exchange(large_, {})) {
+            SceneWorker worker(shared_);
+            finish(worker.run(scenes_[number], number, all), false);
+        }
+    }
+
+    const BatchJob& job_;
+    const std::vector<SceneFile>& scenes_;
+    const SceneDone& done_;
+    BatchShared shared_;
+    int workers_ = 1;
+    std::vector<std::size_t> mine_;  // of this shard, by number in the list
+
+    std::mutex mutex_;  // of all that follows
+    std::size_t next_ = 0, left_ = 0;
+    std::vector<std::size_t> large_;
+    BatchReport report_;
+};
+
+}  // namespace
+
+BatchReport run_batch(const BatchJob& job, const std::vector<SceneFile>& scenes, const SceneDone& done) {
+    return Run(job, scenes, done).run();
+}
+
+}  // namespace tessera::cli
