@@ -5,6 +5,7 @@
 #include <tessera/error.h>
 #include <tessera/image.h>
 #include <tessera/load.h>
+#include <tessera/poses.h>
 #include <tessera/planes.h>
 #include <tessera/render.h>
 #include <tessera/renderer.h>

@@ -80,9 +80,14 @@ bool Json::boolean() const {
     return value;
 }
 
-float Json::number() const {
+double Json::real() const {
     double value = 0;
     if (element_.get(value) != simdjson::SUCCESS) wrong_type("a number");
+    return value;
+}
+
+float Json::number() const {
+    const double value = real();
     if (!(std::fabs(value) <= static_cast<double>(std::numeric_limits<float>::max()))) fail("the number is too large");
     return static_cast<float>(value);
 }

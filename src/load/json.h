@@ -76,6 +76,7 @@ class Json {
     std::string_view string() const;
     bool boolean() const;
     float number() const;  // finite as a 32-bit float
+    double real() const;   // any number
     std::uint64_t integer(std::uint64_t most = std::numeric_limits<std::int64_t>::max()) const;
     // A reference to one of `size` things called `what`.
     int reference(std::size_t size, std::string_view what) const;
