@@ -75,18 +75,31 @@ class TESSERA_API Image {
 
 struct ImageInfo {
     int width = 0, height = 0, channels = 0, bits = 8;
-    std::string codec;  // "png" or "jpeg"
+    std::string codec;           // "png", "jpeg", "hdr", "exr", "tiff" or "webp"
+    bool floating = false;       // the samples are floating-point numbers: linear light
+    bool premultiplied = false;  // colour is stored multiplied by alpha
 };
 
-// Reads the header only. The codec is told by content. Throws kInput when it is none we know.
+// Reads the header only; no format needs the OpenImageIO module for that. The codec is told by content.
+// Throws kInput when it is none we know.
 TESSERA_API ImageInfo read_image_info(std::span<const std::byte> file);
-// Decodes PNG (8 and 16 bit, every colour type) or JPEG (8 bit grey, YCbCr, CMYK) into kRgba8, or
-// into kRgba16 for 16-bit PNG when `keep_16_bit`. Values are as stored: no colour space is applied.
-// Throws kInput for a damaged file and kLimit when width * height exceeds `max_pixels`, before the
-// pixels are allocated.
+
+struct DecodeOptions {
+    std::uint64_t max_pixels = 1u << 28;
+    bool keep_16_bit = false;  // 16-bit PNG and TIFF become kRgba16; otherwise they are rounded to kRgba8
+    bool keep_float = false;   // HDR, EXR and floating-point TIFF become kRgba32f; otherwise they are refused
+};
+// Decodes PNG (8 and 16 bit, every colour type), JPEG (8 bit grey, YCbCr, CMYK), Radiance HDR and, with
+// the OpenImageIO module, OpenEXR (one part; the channels R, G, B, A or Y), TIFF (8, 16, 32-bit float; the
+// first page) and WebP (not animated). Values are as stored, no colour space is applied; alpha is
+// straight in kRgba8 and kRgba16, and as stored in kRgba32f (see ImageInfo::premultiplied).
+// Throws kInput for a damaged file, kUsage where the module is missing, and kLimit when
+// width * height exceeds `max_pixels`, before the pixels are allocated.
+TESSERA_API Image decode_image(std::span<const std::byte> file, const DecodeOptions& options);
 TESSERA_API Image decode_image(std::span<const std::byte> file, std::uint64_t max_pixels = 1u << 28,
                                bool keep_16_bit = false);
 // Reads and decodes a file; the error names it.
+TESSERA_API Image read_image(const std::string& path, const DecodeOptions& options);
 TESSERA_API Image read_image(const std::string& path, std::uint64_t max_pixels = 1u << 28, bool keep_16_bit = false);
 
 struct PngOptions {
@@ -97,8 +110,9 @@ struct PngOptions {
 TESSERA_API std::vector<std::byte> encode_png(const Image& image, const PngOptions& options = {});
 // kRgba8 only; alpha is dropped; quality 1 .. 100, 4:4:4 from 90 on, 4:2:0 below.
 TESSERA_API std::vector<std::byte> encode_jpeg(const Image& image, int quality = 92);
-// Chooses the codec by the extension (.png, .jpg, .jpeg). Writes a temporary file beside `path` and
-// renames it, so that a failure leaves nothing behind. Throws kOutput.
+// Chooses the codec by the extension, as encode_image() of image_files.h does, which has the codecs
+// beyond these two. Writes a temporary file beside `path` and renames it, so that a failure leaves nothing behind.
+// Throws kOutput.
 TESSERA_API void write_image(const std::string& path, const Image& image);
 
 // N-plane true colour (FB1): every kRgba8 channel reduced to its number of bits (1 .. 8 each, such as
