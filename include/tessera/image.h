@@ -89,12 +89,12 @@ struct DecodeOptions {
     bool keep_16_bit = false;  // 16-bit PNG and TIFF become kRgba16; otherwise they are rounded to kRgba8
     bool keep_float = false;   // HDR, EXR and floating-point TIFF become kRgba32f; otherwise they are refused
 };
-// Decodes PNG (8 and 16 bit, every colour type), JPEG (8 bit grey, YCbCr, CMYK), Radiance HDR and, with
-// the OpenImageIO module, OpenEXR (one part; the channels R, G, B, A or Y), TIFF (8, 16, 32-bit float; the
-// first page) and WebP (not animated). Values are as stored, no colour space is applied; alpha is
+// Decodes PNG (8 and 16 bit, every colour type), JPEG (8 bit grey, YCbCr, CMYK), WebP (not animated),
+// Radiance HDR and, with the OpenImageIO module, OpenEXR (one part; the channels R, G, B, A or Y) and
+// TIFF (8, 16, 32-bit float; the first page). Values are as stored, no colour space is applied; alpha is
 // straight in kRgba8 and kRgba16, and as stored in kRgba32f (see ImageInfo::premultiplied).
-// Throws kInput for a damaged file, kUsage where the module is missing, and kLimit when
-// width * height exceeds `max_pixels`, before the pixels are allocated.
+// Throws kInput for a damaged file and where the module is missing, and kLimit when width * height
+// exceeds `max_pixels`, before the pixels are allocated.
 TESSERA_API Image decode_image(std::span<const std::byte> file, const DecodeOptions& options);
 TESSERA_API Image decode_image(std::span<const std::byte> file, std::uint64_t max_pixels = 1u << 28,
                                bool keep_16_bit = false);

@@ -1,8 +1,8 @@
-// Picture files beyond PNG and JPEG: Radiance HDR, which Tessera reads and writes itself, and OpenEXR,
-// TIFF and WebP, which need the OpenImageIO module: a small shared object beside the library that is
-// opened the first time one of them is needed. Where it was left out, the functions throw kUsage and
-// say so. Whole files in memory; the bytes depend on the arguments alone (no dates, no names of
-// programs). Any thread may call.
+// Picture files beyond PNG and JPEG: Radiance HDR, which Tessera reads and writes itself, WebP, and
+// OpenEXR and TIFF, which need the OpenImageIO module: a small shared object beside the library that is
+// opened the first time one of them is needed. Where it is missing, reading throws kInput and writing
+// kOutput, and the message says how to get it. Whole files in memory; the bytes depend on the arguments
+// alone (no dates, no names of programs). Any thread may call.
 #pragma once
 
 #include <tessera/export.h>

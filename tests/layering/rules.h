@@ -26,10 +26,23 @@ struct Home {
 // Every library outside the standard's, with the folders that may include it.
 inline const std::vector<Home>& homes() {
     static const std::vector<Home> list{
-        {"tbb/", {"core"}},       {"oneapi/", {"core"}},   {"png.h", {"image"}},        {"zlib.h", {"image"}},
-        {"jpeglib.h", {"image"}}, {"jerror.h", {"image"}}, {"libdeflate.h", {"image"}}, {"OpenImageIO/", {"image"}},
-        {"simdjson.h", {"load"}}, {"minizip/", {"load"}},  {"draco/", {"load"}},        {"meshoptimizer.h", {"load"}},
-        {"embree3/", {"trace"}},  {"embree4/", {"trace"}}, {"hwy/", {"simd"}},          {"glm/", {"core", "geometry"}},
+        {"tbb/", {"core"}},
+        {"oneapi/", {"core"}},
+        {"png.h", {"image"}},
+        {"zlib.h", {"image"}},
+        {"jpeglib.h", {"image"}},
+        {"jerror.h", {"image"}},
+        {"libdeflate.h", {"image"}},
+        {"webp/", {"image"}},
+        {"OpenImageIO/", {"image"}},
+        {"simdjson.h", {"load"}},
+        {"minizip/", {"load"}},
+        {"draco/", {"load"}},
+        {"meshoptimizer.h", {"load"}},
+        {"embree3/", {"trace"}},
+        {"embree4/", {"trace"}},
+        {"hwy/", {"simd"}},
+        {"glm/", {"core", "geometry"}},
         {"CLI/", {"cli"}},
     };
     return list;
