@@ -124,12 +124,13 @@ TESSERA_API Image quantize_true_color(const Image& image, int red_bits, int gree
 struct ImageDifference {
     std::uint64_t differing_pixels = 0;
     double max_error = 0, mean_error = 0;  // over all channels, in units of 1/255 for kRgba8
-    double psnr = 0;                       // dB; infinity for equal images
+    double psnr = 0;                       // dB, of a signal of 1 for floats; infinity for equal images
 };
 // Both images must have the same size and format (kUsage otherwise). A pixel differs when a channel
 // differs by more than `tolerance` (in 1/255 for kRgba8, 1/65535 for kRgba16).
 TESSERA_API ImageDifference compare_images(const Image& a, const Image& b, double tolerance = 0);
-// A picture of where two kRgba8 images differ: the first one greyed, differences in red.
+// A picture of where two images of kRgba8 or kRgba32f (`tolerance` in its own unit) differ: the first
+// one greyed, differences in red.
 TESSERA_API Image difference_picture(const Image& a, const Image& b, double tolerance = 0);
 // FNV-1a (64 bit) over the pixel bytes: the `color_hash` of the statistics.
 TESSERA_API std::uint64_t hash_pixels(const Image& image);

@@ -52,6 +52,15 @@ struct ImagePlane {
 TESSERA_API std::vector<ImagePlane> decode_exr_channels(std::span<const std::byte> file,
                                                         std::uint64_t max_pixels = 1u << 28);
 
+// Those of the file at `path`; none when it is no OpenEXR file. The error names it.
+TESSERA_API std::vector<ImagePlane> read_exr_channels(const std::string& path, std::uint64_t max_pixels = 1u << 28);
+
+// As compare_images(), over all channels: a pixel differs when any channel differs by more than
+// `tolerance`, in the channel's own unit. Both lists must have the same names in the same order, and all
+// planes the same size (kUsage otherwise).
+TESSERA_API ImageDifference compare_planes(std::span<const ImagePlane> a, std::span<const ImagePlane> b,
+                                           double tolerance = 0);
+
 // --- pictures -------------------------------------------------------------------------------
 
 // Radiance RGBE (run-length encoded) of a kRgba32f image; alpha is dropped. A pixel becomes three bytes
@@ -71,9 +80,9 @@ struct WebpOptions {
 TESSERA_API std::vector<std::byte> encode_webp(const Image& rgba8, const WebpOptions& options = {});
 
 struct EncodeOptions {
-    PngOptions png;
+    PngOptions png = {};
     int jpeg_quality = 92;
-    WebpOptions webp;
+    WebpOptions webp = {};
     ChannelType exr_type = ChannelType::kHalf;  // kHalf or kFloat
 };
 // Chooses the codec by `extension` (any case, with or without the dot): png, jpg, jpeg, tif, tiff, webp

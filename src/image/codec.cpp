@@ -58,6 +58,17 @@ std::vector<std::byte> read_file(const std::string& path) {
     return bytes;
 }
 
+// decode() of the file's bytes, whose errors then name the file.
+template <class Decode>
+auto read_and(const std::string& path, const Decode& decode) {
+    const std::vector<std::byte> file = read_file(path);
+    try {
+        return decode(std::span<const std::byte>(file));
+    } catch (const Error& e) {
+        throw Error(e.code(), e.message(), path, e.location());
+    }
+}
+
 std::vector<std::byte> encode_linear_exr(const Image& image, const EncodeOptions& options) {
     if (image.empty() || image.format() != PixelFormat::kRgba32f)
         throw Error(ErrorCode::kUsage, "EXR takes images of linear floating-point RGBA");
@@ -126,12 +137,13 @@ Image decode_image(std::span<const std::byte> file, std::uint64_t max_pixels, bo
 }
 
 Image read_image(const std::string& path, const DecodeOptions& options) {
-    const std::vector<std::byte> file = read_file(path);
-    try {
-        return decode_image(file, options);
-    } catch (const Error& e) {
-        throw Error(e.code(), e.message(), path, e.location());
-    }
+    return read_and(path, [&](std::span<const std::byte> file) { return decode_image(file, options); });
+}
+
+std::vector<ImagePlane> read_exr_channels(const std::string& path, std::uint64_t max_pixels) {
+    return read_and(path, [&](std::span<const std::byte> file) {
+        return is_exr(file) ? decode_exr_channels(file, max_pixels) : std::vector<ImagePlane>();
+    });
 }
 
 Image read_image(const std::string& path, std::uint64_t max_pixels, bool keep_16_bit) {

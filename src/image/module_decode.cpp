@@ -169,16 +169,12 @@ Sources sources_of(const ModuleFile& file) {
     return sources;
 }
 
-ImageInfo checked_info(const ImageInfo& info, std::uint64_t max_pixels) {
-    check_image_size(static_cast<std::uint64_t>(info.width), static_cast<std::uint64_t>(info.height), max_pixels);
-    return info;
-}
-
 }  // namespace
 
 Image decode_exr(std::span<const std::byte> file, std::uint64_t max_pixels) {
-    const ImageInfo info = checked_info(read_exr_info(file), max_pixels);
     const ExrHeader header = read_exr_header(file);
+    check_image_size(header.width, header.height, max_pixels);
+    const ImageInfo info = read_exr_info(file);
     const bool color = header.find("R") != nullptr && header.find("G") != nullptr && header.find("B") != nullptr;
     if (!color && header.find("Y") == nullptr)
         throw Error(ErrorCode::kInput, "the EXR has neither the channels R, G, B nor Y");
@@ -191,8 +187,9 @@ Image decode_exr(std::span<const std::byte> file, std::uint64_t max_pixels) {
 
 std::vector<ImagePlane> decode_exr_channels(std::span<const std::byte> file, std::uint64_t max_pixels) {
     if (!is_exr(file)) throw Error(ErrorCode::kInput, "not an EXR file");
-    const ImageInfo info = checked_info(read_exr_info(file), max_pixels);
     const ExrHeader header = read_exr_header(file);
+    check_image_size(header.width, header.height, max_pixels);
+    const ImageInfo info = read_exr_info(file);
     const std::uint64_t samples = std::uint64_t{header.width} * header.height * header.channels.size();
     if (samples / 4 > max_pixels)
         throw Error(ErrorCode::kLimit, std::to_string(header.channels.size()) + " channels of " +
@@ -223,7 +220,8 @@ std::vector<ImagePlane> decode_exr_channels(std::span<const std::byte> file, std
 }
 
 Image decode_tiff(std::span<const std::byte> file, std::uint64_t max_pixels, bool keep_16_bit) {
-    const ImageInfo info = checked_info(read_tiff_info(file), max_pixels);
+    const ImageInfo info = read_tiff_info(file);
+    check_image_size(static_cast<std::uint64_t>(info.width), static_cast<std::uint64_t>(info.height), max_pixels);
     ModuleFile opened(kModuleTiff, "TIFF", file, info);
     const Sources sources = sources_of(opened);
     return info.floating ? to_float(opened, info, sources) : to_integers(opened, info, sources, keep_16_bit);
