@@ -10,9 +10,9 @@ set(TESSERA_PC_REQUIRES_PRIVATE "")
 set(TESSERA_PC_LIBS_PRIVATE "")
 if(NOT BUILD_SHARED_LIBS)
   set(TESSERA_STATIC ON)
-  set(static_libraries PNG::PNG ZLIB::ZLIB JPEG::JPEG simdjson::simdjson PkgConfig::LIBDEFLATE PkgConfig::DRACO PkgConfig::MINIZIP
-    meshoptimizer::meshoptimizer Threads::Threads)
-  set(TESSERA_PC_REQUIRES_PRIVATE "libpng zlib libjpeg libdeflate simdjson draco minizip")
+  set(static_libraries PNG::PNG ZLIB::ZLIB JPEG::JPEG simdjson::simdjson PkgConfig::LIBDEFLATE PkgConfig::WEBP PkgConfig::DRACO
+    PkgConfig::MINIZIP meshoptimizer::meshoptimizer Threads::Threads)
+  set(TESSERA_PC_REQUIRES_PRIVATE "libpng zlib libjpeg libdeflate libwebp simdjson draco minizip")
   set(TESSERA_PC_LIBS_PRIVATE "-lmeshoptimizer -pthread -lstdc++ -lm")
   if(TESSERA_THREADS STREQUAL "tbb")
     list(APPEND static_libraries TBB::tbb)
@@ -27,6 +27,10 @@ install(TARGETS tessera EXPORT TesseraTargets
   LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}
   ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
   RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+# Opened on demand, never linked.
+if(TARGET tessera_oiio)
+  install(TARGETS tessera_oiio LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/tessera)
+endif()
 install(EXPORT TesseraTargets NAMESPACE Tessera:: DESTINATION ${package_dir})
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/tessera DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}
   FILES_MATCHING PATTERN "*.h")

@@ -76,18 +76,31 @@ class TESSERA_API Image {
 
 struct ImageInfo {
     int width = 0, height = 0, channels = 0, bits = 8;
-    std::string codec;  // "png" or "jpeg"
+    std::string codec;           // "png", "jpeg", "hdr", "exr", "tiff" or "webp"
+    bool floating = false;       // the samples are floating-point numbers: linear light
+    bool premultiplied = false;  // colour is stored multiplied by alpha
 };
 
-// Reads the header only. The codec is told by content. Throws kInput when it is none we know.
+// Reads the header only; no format needs the OpenImageIO module for that. The codec is told by content.
+// Throws kInput when it is none we know.
 TESSERA_API ImageInfo read_image_info(std::span<const std::byte> file);
-// Decodes PNG (8 and 16 bit, every colour type) or JPEG (8 bit grey, YCbCr, CMYK) into kRgba8, or
-// into kRgba16 for 16-bit PNG when `keep_16_bit`. Values are as stored: no colour space is applied.
-// Throws kInput for a damaged file and kLimit when width * height exceeds `max_pixels`, before the
-// pixels are allocated.
+
+struct DecodeOptions {
+    std::uint64_t max_pixels = 1u << 28;
+    bool keep_16_bit = false;  // 16-bit PNG and TIFF become kRgba16; otherwise they are rounded to kRgba8
+    bool keep_float = false;   // HDR, EXR and floating-point TIFF become kRgba32f; otherwise they are refused
+};
+// Decodes PNG (8 and 16 bit, every colour type), JPEG (8 bit grey, YCbCr, CMYK), WebP (not animated),
+// Radiance HDR and, with the OpenImageIO module, OpenEXR (one part; the channels R, G, B, A or Y) and
+// TIFF (8, 16, 32-bit float; the first page). Values are as stored, no colour space is applied; alpha is
+// straight in kRgba8 and kRgba16, and as stored in kRgba32f (see ImageInfo::premultiplied).
+// Throws kInput for a damaged file and where the module is missing, and kLimit when width * height
+// exceeds `max_pixels`, before the pixels are allocated.
+TESSERA_API Image decode_image(std::span<const std::byte> file, const DecodeOptions& options);
 TESSERA_API Image decode_image(std::span<const std::byte> file, std::uint64_t max_pixels = 1u << 28,
                                bool keep_16_bit = false);
 // Reads and decodes a file; the error names it.
+TESSERA_API Image read_image(const std::string& path, const DecodeOptions& options);
 TESSERA_API Image read_image(const std::string& path, std::uint64_t max_pixels = 1u << 28, bool keep_16_bit = false);
 
 struct PngOptions {
@@ -99,9 +112,13 @@ struct PngOptions {
 TESSERA_API std::vector<std::byte> encode_png(const Image& image, const PngOptions& options = {});
 // kRgba8 only; alpha is dropped; quality 1 .. 100, 4:4:4 from 90 on, 4:2:0 below.
 TESSERA_API std::vector<std::byte> encode_jpeg(const Image& image, int quality = 92);
-// Chooses the codec by the extension (.png, .jpg, .jpeg). Writes a temporary file beside `path` and
-// renames it, so that a failure leaves nothing behind. Throws kOutput.
+// Chooses the codec by the extension, as encode_image() of image_files.h does, which has the codecs
+// beyond these two. Writes a temporary file beside `path` and renames it, so that a failure leaves nothing behind.
+// Throws kOutput.
 TESSERA_API void write_image(const std::string& path, const Image& image);
+
+// Linear Rec. 709 (kRgb32f) as an opaque kRgba8 picture: each channel the nearest sRGB code.
+TESSERA_API Image display_picture(const Image& linear);
 
 // N-plane true colour (FB1): every kRgba8 channel reduced to its number of bits (1 .. 8 each, such as
 // 3-3-2 or 5-6-5, which gives 2^N colours) and widened again, rounding to the nearest level.
@@ -112,12 +129,13 @@ TESSERA_API Image quantize_true_color(const Image& image, int red_bits, int gree
 struct ImageDifference {
     std::uint64_t differing_pixels = 0;
     double max_error = 0, mean_error = 0;  // over all channels, in units of 1/255 for kRgba8
-    double psnr = 0;                       // dB; infinity for equal images
+    double psnr = 0;                       // dB, of a signal of 1 for floats; infinity for equal images
 };
 // Both images must have the same size and format (kUsage otherwise). A pixel differs when a channel
 // differs by more than `tolerance` (in 1/255 for kRgba8, 1/65535 for kRgba16).
 TESSERA_API ImageDifference compare_images(const Image& a, const Image& b, double tolerance = 0);
-// A picture of where two kRgba8 images differ: the first one greyed, differences in red.
+// A picture of where two images of kRgba8 or kRgba32f (`tolerance` in its own unit) differ: the first
+// one greyed, differences in red.
 TESSERA_API Image difference_picture(const Image& a, const Image& b, double tolerance = 0);
 // FNV-1a (64 bit) over the pixel bytes: the `color_hash` of the statistics.
 TESSERA_API std::uint64_t hash_pixels(const Image& image);

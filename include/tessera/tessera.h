@@ -4,6 +4,7 @@
 #include <tessera/clip.h>
 #include <tessera/error.h>
 #include <tessera/image.h>
+#include <tessera/image_files.h>
 #include <tessera/load.h>
 #include <tessera/poses.h>
 #include <tessera/planes.h>

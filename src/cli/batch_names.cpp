@@ -24,13 +24,6 @@ std::string fixed_folder(const std::string& pattern) {
     return fill_pattern("--output", front.substr(0, front.find_last_of('/') + 1), {});
 }
 
-std::string safe_name(const std::string& name) {
-    std::string safe = name;
-    for (char& c : safe)
-        if (c == '/' || static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '_';
-    return safe.empty() || safe == "." || safe == ".." ? "_" : safe;
-}
-
 std::string output_name(const BatchJob& job, const SceneFile& scene, const std::string& camera,
                         std::optional<long> frame) {
     const std::string above = "../";

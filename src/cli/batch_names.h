@@ -16,9 +16,6 @@ struct BatchJob;
 // The folder in front of the first place of a pattern, with its slash: "out/" of "out/{model}.png"; "" without one.
 std::string fixed_folder(const std::string& pattern);
 
-// `name` as a part of a file name: without slashes and control characters, and never "." or "..".
-std::string safe_name(const std::string& name);
-
 // Throws kUsage for places that there are not.
 std::string output_name(const BatchJob& job, const SceneFile& scene, const std::string& camera,
                         std::optional<long> frame);

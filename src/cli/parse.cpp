@@ -118,6 +118,14 @@ Vec3 parse_vector(const std::string& option, const std::string& text) {
     return {v[0], v[1], v[2]};
 }
 
+Intrinsics parse_intrinsics(const std::string& option, const std::string& text) {
+    const auto parts = split(text, ',');
+    if (parts.size() != 4) refuse(option, "'" + text + "' is not FX,FY,CX,CY");
+    constexpr double kLargest = 1e9;
+    return {parse_number(option, parts[0], 1e-3, kLargest), parse_number(option, parts[1], 1e-3, kLargest),
+            parse_number(option, parts[2], -kLargest, kLargest), parse_number(option, parts[3], -kLargest, kLargest)};
+}
+
 std::optional<Vec4> parse_background(const std::string& option, const std::string& text) {
     if (text == "none") return std::nullopt;
     if (!text.empty() && text[0] == '#')

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <tessera/types.h>
+#include <tessera/view.h>
 
 #include <array>
 #include <cstdint>
@@ -27,6 +28,8 @@ struct Size {
 Size parse_size(const std::string& option, const std::string& text);
 // "1,2.5,-3"
 Vec3 parse_vector(const std::string& option, const std::string& text);
+// "fx,fy,cx,cy", of which the first two are positive.
+Intrinsics parse_intrinsics(const std::string& option, const std::string& text);
 // "none" (empty), "#rrggbb", "#rrggbbaa", "r,g,b", "r,g,b,a" (0 .. 1) or a name: display colour and alpha.
 std::optional<Vec4> parse_background(const std::string& option, const std::string& text);
 // "3-3-2": bits of red, green and blue.

@@ -20,6 +20,13 @@ std::string padded(const std::string& option, long number, const std::string& wi
 
 }  // namespace
 
+std::string safe_name(const std::string& name) {
+    std::string safe = name;
+    for (char& c : safe)
+        if (c == '/' || static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '_';
+    return safe.empty() || safe == "." || safe == ".." ? "_" : safe;
+}
+
 bool has_place(const std::string& pattern, const std::string& name) {
     for (std::size_t i = 0; i < pattern.size(); ++i) {
         if (pattern[i] != '{') continue;

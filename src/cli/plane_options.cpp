@@ -50,16 +50,6 @@ std::vector<Aov> parse_aovs(const std::string& text) {
     return aovs;
 }
 
-std::string extension_of(const std::string& output) {
-    if (output.empty() || output == "-" || output.compare(0, 5, "/dev/") == 0) return "png";
-    const std::string file = output.substr(output.find_last_of('/') + 1);
-    const std::size_t dot = file.find_last_of('.');
-    std::string extension = dot == std::string::npos ? std::string() : file.substr(dot + 1);
-    std::transform(extension.begin(), extension.end(), extension.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    return extension;
-}
-
 bool is_number_plane(Aov aov) {
     return aov == Aov::kDepth || aov == Aov::kAlpha || aov == Aov::kNode || aov == Aov::kMaterial ||
            aov == Aov::kPrimitive || aov == Aov::kMotionSeen;
@@ -109,6 +99,16 @@ const char* name(Aov aov) {
     for (const AovName& n : kNames)
         if (n.aov == aov) return n.name;
     return "unknown";
+}
+
+std::string extension_of(const std::string& output) {
+    if (output.empty() || output == "-" || output.compare(0, 5, "/dev/") == 0) return "png";
+    const std::string file = output.substr(output.find_last_of('/') + 1);
+    const std::size_t dot = file.find_last_of('.');
+    std::string extension = dot == std::string::npos ? std::string() : file.substr(dot + 1);
+    std::transform(extension.begin(), extension.end(), extension.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    return extension;
 }
 
 PlaneOptions parse_planes(const PlaneTexts& texts, const std::string& output) {

@@ -48,6 +48,9 @@ struct PlaneOptions {
     double depth_scale = 1000;  // steps of a 16-bit PNG per metre
 };
 
+// What stands behind the last dot of a file's name, in small letters; "png" for stdout, devices and "".
+std::string extension_of(const std::string& output);
+
 // The text of the options.
 struct PlaneTexts {
     std::string aov = "color", colormap, range, depth_scale, color_bits, palette;

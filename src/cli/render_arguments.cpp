@@ -9,8 +9,6 @@
 
 #include <unistd.h>
 
-#include <algorithm>
-#include <cctype>
 #include <initializer_list>
 #include <utility>
 
@@ -18,16 +16,6 @@ namespace tessera::cli {
 namespace {
 
 constexpr double kRadiansPerDegree = 3.14159265358979323846 / 180;
-
-std::string lower(std::string text) {
-    std::transform(text.begin(), text.end(), text.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    return text;
-}
-
-bool ends_with(const std::string& text, const std::string& tail) {
-    return text.size() >= tail.size() && text.compare(text.size() - tail.size(), tail.size(), tail) == 0;
-}
 
 // The value that `text` names, or a refusal that lists the names.
 template <class T>
@@ -61,6 +49,7 @@ Stage parse_stage(const RenderArguments& a, const RenderOptions& render) {
         {{"bins", Stage::kBins}, {"hiz", Stage::kHiZ}, {"overdraw", Stage::kOverdraw}, {"cost", Stage::kCost}});
     if (render.engine != Engine::kRaster) refuse("--show", "needs --engine raster: " + a.engine + " has no tiles");
     if (render.filter != PixelFilter::kBox) refuse("--show", "needs --filter box");
+    if (!render.want_color) refuse("--show", "needs --aov color, in a picture of 8 bits");
     return stage;
 }
 
@@ -69,10 +58,12 @@ void parse_animation(const RenderArguments& a, RenderJob& job) {
     if (!a.time.empty()) job.time = parse_number("--time", a.time, -1e9, 1e9);
     job.skip_existing = a.skip_existing;
     job.frames = parse_frames(a.frames, a.fps, a.turntable);
+    job.fps = parse_number("--fps", a.fps, 1e-3, 1e6);
     if (!job.frames) {
-        if (a.skip_existing) refuse("--skip-existing", "needs --frames or --turntable");
+        if (a.skip_existing && a.poses.empty()) refuse("--skip-existing", "needs --frames, --turntable or --poses");
         if (has_place(a.output, "frame")) refuse("--output", "{frame} needs --frames or --turntable");
-        if (job.codec == Codec::kVideo) refuse("--output", "a video needs --frames or --turntable");
+        if (job.codec == Codec::kVideo && a.poses.empty())
+            refuse("--output", "a video needs --frames, --turntable or --poses");
         return;
     }
     if (job.time && job.frames->plays) refuse("--time", "excludes --frames");
@@ -85,13 +76,37 @@ void parse_animation(const RenderArguments& a, RenderJob& job) {
     }
 }
 
-Codec parse_codec(const std::string& output) {
-    const std::string name = lower(output);
-    if (output == "-" || output.empty() || ends_with(name, ".png")) return Codec::kPng;
-    if (ends_with(name, ".jpg") || ends_with(name, ".jpeg")) return Codec::kJpeg;
-    if (is_video(output)) return Codec::kVideo;
-    if (output.compare(0, 5, "/dev/") == 0) return Codec::kPng;
-    refuse("--output", "'" + output + "' does not end in .png, .jpg or .jpeg, nor in " + video_endings());
+Codec parse_codec(const std::string& output, const PlaneTexts& planes) {
+    if (!is_video(output)) {
+        const std::string extension = extension_of(output);
+        if (extension != "npy" && file_content(extension) == FileContent::kUnknown)
+            refuse("--output", "'" + output + "' does not end in .png, .jpg, .jpeg, .webp, .tif, .tiff, .exr, .hdr or "
+                                   ".npy, nor in " + video_endings());
+        return Codec::kPicture;
+    }
+    if (planes.aov != "color") refuse("--aov", "a video shows color");
+    return Codec::kVideo;
+}
+
+// Cameras of OpenCV, and of a file.
+void parse_cameras(const RenderArguments& a, RenderJob& job) {
+    View& view = job.render.view;
+    if (!a.intrinsics.empty()) {
+        if (!a.fov.empty()) refuse("--intrinsics", "excludes --fov");
+        view.intrinsics = parse_intrinsics("--intrinsics", a.intrinsics);
+    }
+    if (a.poses.empty()) return;
+    if (!a.camera.empty() || !a.eye.empty()) refuse("--poses", "excludes --camera and --eye");
+    if (!a.fov.empty()) refuse("--poses", "excludes --fov; give --intrinsics for poses without their own");
+    if (job.frames && job.frames->turning) refuse("--poses", "excludes --turntable");
+    job.poses = read_poses(a.poses, job.render.width, job.render.height);
+    for (Pose& pose : job.poses)
+        if (!pose.view.intrinsics) pose.view.intrinsics = view.intrinsics;
+    if (job.codec == Codec::kVideo) {
+        if (job.frames && job.poses.size() > 1) refuse("--poses", "one picture of a video has one camera");
+    } else if (job.poses.size() > 1 && !has_place(a.output, "camera")) {
+        refuse("--output", "several cameras need {camera} in the name");
+    }
 }
 
 void check_outputs(const RenderArguments& a) {
@@ -119,9 +134,22 @@ void add_picture_options(CLI::App& app, RenderArguments& a) {
     const OptionAdder option(app);
     option("Input and output", "--quality", a.quality, "1..100", "quality of JPEG (default 92)");
     option("Input and output", "--png-level", a.png_level, "0..12", "0 stores, 12 is smallest and slowest (default 1)");
-    option("Input and output", "--color-bits", a.color_bits, "R-G-B",
+    option("Input and output", "--color-bits", a.planes.color_bits, "R-G-B",
            "reduce to so many bits a channel, such as 3-3-2");
-    option("Input and output", "--aov", a.aov, "LIST", "planes to write: color");
+    option("Input and output", "--palette", a.planes.palette, "N", "reduce to so many colours that fit, 2 .. 256 (PNG)");
+    app.add_flag("--dither", a.planes.dither, "with --palette: mix colours in fine patterns")->group("Input and output");
+    option("Planes", "--aov", a.planes.aov, "LIST",
+           "planes to write, and only these are computed (default color): color, alpha, depth, normal, shading-normal, "
+           "uv, position, albedo, node, material, primitive, motion, motion-seen. A file each, {aov} in the name tells "
+           "which; or one .exr with named channels. .npy and .exr hold every number as it is; .png ids as R + 256 G + "
+           "65536 B, depth in steps of --depth-scale, normals as colours");
+    option("Planes", "--depth", a.depth, "NAME", "planar (default: along the view axis) or euclidean (to the eye)");
+    option("Planes", "--depth-scale", a.planes.depth_scale, "N", "steps a metre of depth in PNG (default 1000)");
+    option("Planes", "--space", a.space, "NAME",
+           "of normals and positions: world (default), camera (Y up, looking along -Z) or opencv (Y down, along Z)");
+    option("Planes", "--colormap", a.planes.colormap, "NAME",
+           "planes of one number as pictures: viridis, magma, turbo, grey, or ids (a colour for each number)");
+    option("Planes", "--range", a.planes.range, "LOW,HIGH", "of the colormap (default: what the picture has)");
     app.add_flag("-q,--quiet", a.quiet, "nothing on stderr but errors")->group("Input and output");
 
     option("Picture", "-s,--size", a.size, "WxH", "size in pixels (default 1024x768)");
@@ -154,6 +182,10 @@ void add_picture_options(CLI::App& app, RenderArguments& a) {
     option("Camera", "--up", a.up, "y|z|X,Y,Z",
            "y (default), z for files whose up axis is Z, or the camera's up direction");
     option("Camera", "--fov", a.fov, "DEGREES", "vertical field of view (default 35)");
+    option("Camera", "--intrinsics", a.intrinsics, "FX,FY,CX,CY",
+           "the lens in pixels as OpenCV has it, where (0, 0) is the centre of the top left pixel");
+    option("Camera", "--poses", a.poses, "FILE.json",
+           "a picture from each camera of the file, {camera} in the name (docs/labels.md; transforms.json works, too)");
 
     option("Light", "--lighting", a.lighting, "NAME", "auto (default), scene (only its own lights) or studio");
     option("Light", "--ambient", a.ambient, "X", "uniform ambient radiance");
@@ -175,7 +207,8 @@ void add_render_options(CLI::App& app, RenderArguments& a) {
            "scene file (.gltf, .glb, .obj, .ply, .stl, .zip), or - to read it from stdin")
         ->required();
     option("Input and output", "-o,--output", a.output, "FILE",
-           "picture to write: .png, .jpg or .jpeg; - streams PNG to stdout; .mp4, .mov, .mkv, .webm or .gif: a video");
+           "picture to write: .png, .jpg, .webp, .tif, or linear .exr, .hdr; .npy for --aov; - streams PNG to stdout; "
+           ".mp4, .mov, .mkv, .webm or .gif: a video");
     option("Input and output", "--stats", a.stats, "FILE", "write statistics as JSON to FILE, or to stdout with -");
     add_picture_options(app, a);
     app.add_flag("--skip-existing", a.skip_existing,
@@ -189,6 +222,8 @@ void add_render_options(CLI::App& app, RenderArguments& a) {
         "  tessera render room.gltf -o room.jpg --engine reference-trace --camera front --samples 16\n"
         "  tessera render robot.glb -o walk_{frame:03}.png --frames 0-47 --animation Walk\n"
         "  tessera render model.glb -o turn.mp4 --turntable 72 -s 640x480\n"
+        "  tessera render model.glb -o labels.exr --aov color,depth,normal,node\n"
+        "  tessera render room.glb -o {camera}_{aov}.npy --aov depth,position --poses cameras.json\n"
         "  tessera render model.glb -o model.png --eye 3,2,4 --target 0,1,0 --fov 35 --stats model.json\n"
         "\nThe color_hash of --stats is the same on every machine, for every --isa and for every --threads.");
 }
@@ -197,11 +232,16 @@ RenderJob parse_render_arguments(const RenderArguments& a) {
     RenderJob job;
     RenderOptions& render = job.render;
     check_outputs(a);
-    job.codec = parse_codec(a.output);
-    job.quality = static_cast<int>(parse_integer("--quality", a.quality, 1, 100));
-    job.png_level = static_cast<int>(parse_integer("--png-level", a.png_level, 0, 12));
-    if (!a.color_bits.empty()) job.color_bits = parse_color_bits("--color-bits", a.color_bits);
-    if (a.aov != "color") refuse("--aov", "'" + a.aov + "' does not exist yet; there is color");
+    job.codec = parse_codec(a.output, a.planes);
+    job.planes = parse_planes(a.planes, job.codec == Codec::kVideo ? std::string() : a.output);
+    want_planes(job.planes, render);
+    EncodeOptions& encode = job.planes.encode;
+    encode.jpeg_quality = encode.webp.quality = static_cast<int>(parse_integer("--quality", a.quality, 1, 100));
+    encode.png.level = static_cast<int>(parse_integer("--png-level", a.png_level, 0, 12));
+    render.euclidean_depth = choose<bool>("--depth", a.depth, {{"planar", false}, {"euclidean", true}});
+    render.label_space = choose<LabelSpace>(
+        "--space", a.space,
+        {{"world", LabelSpace::kWorld}, {"camera", LabelSpace::kCamera}, {"opencv", LabelSpace::kOpenCvCamera}});
 
     const Size size = parse_size("--size", a.size);
     render.width = size.width, render.height = size.height;
@@ -223,6 +263,7 @@ RenderJob parse_render_arguments(const RenderArguments& a) {
     job.variant = a.variant;
     parse_animation(a, job);
     render.view = parse_view(a, job.z_is_up);
+    parse_cameras(a, job);
 
     render.lighting =
         choose<Lighting>("--lighting", a.lighting,

@@ -3,24 +3,28 @@
 #pragma once
 
 #include <tessera/load.h>
+#include <tessera/poses.h>
 #include <tessera/render.h>
 
 #include "cli/frames.h"
+#include "cli/planes.h"
 
 #include <CLI/App.hpp>
 
-#include <array>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace tessera::cli {
 
 struct RenderArguments {
     std::string scene, output, stats;
-    std::string size = "1024x768", engine = "raster", samples = "4", filter = "box", aov = "color";
+    std::string size = "1024x768", engine = "raster", samples = "4", filter = "box";
+    PlaneTexts planes;
+    std::string depth = "planar", space = "world";
     std::string time, animation, frames, fps = "24", turntable, variant;
-    std::string camera, eye, target, up = "y", fov;
-    std::string show, background = "white", exposure = "auto", tone_map = "neutral", encoding = "srgb", color_bits;
+    std::string camera, eye, target, up = "y", fov, intrinsics, poses;
+    std::string show, background = "white", exposure = "auto", tone_map = "neutral", encoding = "srgb";
     std::string lighting = "auto", ambient;
     std::string threads, isa = "auto", quality = "92", png_level = "1";
     std::string max_triangles, max_pixels, max_memory, timeout;
@@ -34,7 +38,7 @@ void add_render_options(CLI::App& app, RenderArguments& arguments);
 // Those about picture and machine, which other commands have, too.
 void add_picture_options(CLI::App& app, RenderArguments& arguments);
 
-enum class Codec { kPng, kJpeg, kVideo };
+enum class Codec { kPicture, kVideo };
 
 // The arguments with their meaning. `camera` and `animation` stay text: they name parts of the scene.
 struct RenderJob {
@@ -45,9 +49,10 @@ struct RenderJob {
     std::optional<Frames> frames;  // a sequence
     bool skip_existing = false;
     bool z_is_up = false;
-    Codec codec = Codec::kPng;
-    int quality = 92, png_level = 1;
-    std::optional<std::array<int, 3>> color_bits;
+    double fps = 24;
+    std::vector<Pose> poses;  // a picture from each, in place of the view
+    Codec codec = Codec::kPicture;
+    PlaneOptions planes;  // what is written
     std::optional<double> timeout;                                             // seconds
     std::uint64_t max_picture = std::uint64_t{kMaxImageSide} * kMaxImageSide;  // pixels
 };

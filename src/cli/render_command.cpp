@@ -5,11 +5,12 @@
 #include "cli/files.h"
 #include "cli/parse.h"
 #include "cli/pattern.h"
-#include "cli/picture_file.h"
+#include "cli/planes.h"
 #include "cli/render_arguments.h"
 #include "cli/report.h"
 #include "cli/scene_input.h"
 #include "cli/scene_setup.h"
+#include "cli/shots.h"
 #include "cli/statistics.h"
 #include "cli/stopwatch.h"
 #include "cli/video.h"
@@ -18,9 +19,12 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <set>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -39,38 +43,25 @@ void within(Deadline& deadline, Work&& work) {
     }
 }
 
-// Reduces, encodes and writes a picture. Returns the milliseconds that took.
-double write_picture(const RenderJob& job, RenderResult& result, const std::string& output,
-                     std::optional<Video>& video) {
-    finish_color(job, result);
-    const Stopwatch encoding;
-    if (output.empty()) return 0;
-    if (video) {
-        video->add(result.color);
-        return encoding.milliseconds();
-    }
-    write_output(output, encode_color(job, result));
-    return encoding.milliseconds();
-}
-
-std::string output_of(const std::string& pattern, long frame) {
-    return fill_pattern("--output", pattern, {{"frame", frame}});
+std::string output_of(const std::string& pattern, const std::string& camera, std::optional<long> frame,
+                      const std::string& aov) {
+    if (pattern == "-") return pattern;
+    PatternValues values{{"camera", safe_name(camera)}, {"aov", aov}};
+    if (frame) values["frame"] = *frame;
+    return fill_pattern("--output", pattern, values);
 }
 
 // Draws and writes one picture after the other, and remembers what happened for the statistics.
 class Sequence {
   public:
     Sequence(RenderJob& job, const Scene& scene, const RenderArguments& arguments)
-        : job_(job), scene_(scene), arguments_(arguments), bar_(!arguments.quiet) {
+        : job_(job), scene_(scene), arguments_(arguments), shots_(job), bar_(!arguments.quiet) {
         if (bar_.active())
             job.render.progress = [this](double done) {
                 const std::lock_guard lock(bar_mutex_);
-                bar_.show((static_cast<double>(drawn_) + done) / static_cast<double>(pictures()));
+                bar_.show((static_cast<double>(drawn_) + done) / static_cast<double>(shots_.count()));
             };
     }
-
-    // Without --frames there is one.
-    long pictures() const { return job_.frames ? job_.frames->count() : 1; }
 
     void run(Deadline& deadline, CommandTimes times, const Stopwatch& total) {
         if (job_.timeout) job_.render.cancel = [&] { return deadline.expired(); };
@@ -78,35 +69,23 @@ class Sequence {
         RenderResult result;
         std::optional<Video> video;
         if (job_.codec == Codec::kVideo)
-            video.emplace(output_of(arguments_.output, job_.frames->first),
-                          VideoOptions{job_.frames->fps, !job_.render.background}, job_.render.cancel);
-        for (; drawn_ < pictures(); ++drawn_) {
-            std::string output = arguments_.output;
-            Moment moment = job_.render.moment;
-            View view = job_.render.view;
-            if (job_.frames) {
-                const long frame = job_.frames->first + drawn_;
-                output = output_of(arguments_.output, frame);
-                moment = job_.frames->moment(moment, frame);
-                view = job_.frames->view(view, frame);
-                if (!video && job_.skip_existing && ::access(output.c_str(), F_OK) == 0) continue;
-            }
-            within(deadline, [&] {
-                if (!job_.frames) {
-                    result = render(scene_, job_.render);
-                    return;
-                }
-                if (!renderer) renderer.emplace(scene_, job_.render);
-                renderer->draw(view, moment, result);
-            });
-            if (drawn_ + 1 == pictures() && !video) deadline.disarm();
+            video.emplace(arguments_.output, VideoOptions{job_.fps, !job_.render.background}, job_.render.cancel);
+        for (; drawn_ < shots_.count(); ++drawn_) {
+            const PlannedShot shot = shots_.at(drawn_);
+            const std::vector<std::string> files = video ? std::vector<std::string>{} : files_of(shot);
+            if (!files.empty() && job_.skip_existing && std::all_of(files.begin(), files.end(), exists)) continue;
+            within(deadline, [&] { draw(shot, renderer, result); });
+            const bool last = drawn_ + 1 == shots_.count();
+            if (last && !video) deadline.disarm();
             bar_.clear();
             deadline.hold(true);
-            result.warnings.insert(result.warnings.begin(), scene_.warnings.begin(), scene_.warnings.end());
-            if (!arguments_.quiet && !reported_) report_warnings(input_name(arguments_.scene), result.warnings);
-            reported_ = true;
-            if (!arguments_.quiet && job_.render.show != Stage::kPicture) report_stage(job_.render, result);
-            within(deadline, [&] { times.encode_ms = write_picture(job_, result, output, video); });
+            report(result);
+            const Stopwatch encoding;
+            within(deadline, [&] {
+                if (video) video->add(result.color);
+                write(files, result);
+            });
+            times.encode_ms = encoding.milliseconds();
             times.total_ms = total.milliseconds();
             if (!arguments_.stats.empty())
                 statistics_.push_back(statistics_json(input_name(arguments_.scene), job_.render, result, times));
@@ -116,18 +95,59 @@ class Sequence {
         deadline.disarm();
     }
 
-    // One object, or with --frames a list of them.
+    // One object, or of several pictures a list of them.
     std::string statistics() const {
-        if (!job_.frames) return statistics_.empty() ? "{}" : statistics_.front();
+        if (!job_.frames && job_.poses.empty()) return statistics_.empty() ? "{}" : statistics_.front();
         std::string list = "[";
         for (std::size_t i = 0; i < statistics_.size(); ++i) list += (i == 0 ? "\n" : ",\n") + statistics_[i];
         return list + "]\n";
     }
 
   private:
+    static bool exists(const std::string& file) { return ::access(file.c_str(), F_OK) == 0; }
+
+    // The files of a picture, in the order of the planes.
+    std::vector<std::string> files_of(const PlannedShot& shot) const {
+        std::vector<std::string> files;
+        if (arguments_.output.empty()) return files;
+        for (const PlaneFile& file : job_.planes.files)
+            files.push_back(output_of(arguments_.output, shot.camera, shot.frame, file.aov));
+        return files;
+    }
+
+    void draw(const PlannedShot& shot, std::optional<Renderer>& renderer, RenderResult& result) {
+        if (shots_.count() == 1) {
+            RenderOptions options = job_.render;
+            options.view = shot.now.view;
+            options.moment = shot.now.moment;
+            options.motion_before = shot.before;
+            options.motion_after = shot.after;
+            result = render(scene_, options);
+        } else {
+            if (!renderer) renderer.emplace(scene_, job_.render);
+            renderer->draw(shot.now, shot.before, shot.after, result);
+        }
+        finish_color(job_.planes, result);
+    }
+
+    void report(RenderResult& result) {
+        result.warnings.insert(result.warnings.begin(), scene_.warnings.begin(), scene_.warnings.end());
+        if (!arguments_.quiet && !reported_) report_warnings(input_name(arguments_.scene), result.warnings);
+        reported_ = true;
+        if (!arguments_.quiet && job_.render.show != Stage::kPicture) report_stage(job_.render, result);
+    }
+
+    void write(const std::vector<std::string>& files, const RenderResult& result) const {
+        for (std::size_t i = 0; i < files.size(); ++i) {
+            if (job_.skip_existing && exists(files[i])) continue;
+            write_output(files[i], encode_planes(job_.planes, job_.planes.files[i], result));
+        }
+    }
+
     RenderJob& job_;
     const Scene& scene_;
     const RenderArguments& arguments_;
+    const ShotList shots_;
     ProgressBar bar_;
     std::mutex bar_mutex_;
     long drawn_ = 0;
@@ -135,19 +155,31 @@ class Sequence {
     std::vector<std::string> statistics_;
 };
 
+// Refuses now what could not be written later, and cameras that would have one file.
+void check_outputs(const RenderJob& job, const RenderArguments& arguments) {
+    if (!arguments.stats.empty()) check_writable(arguments.stats);
+    if (arguments.output.empty()) return;
+    if (job.codec == Codec::kVideo) return check_writable(arguments.output);
+    const std::optional<long> frame = job.frames ? std::optional(job.frames->first) : std::nullopt;
+    std::set<std::string> files;
+    const std::size_t cameras = std::max<std::size_t>(job.poses.size(), 1);
+    for (std::size_t i = 0; i < cameras; ++i) {
+        const std::string camera = job.poses.empty() ? job.camera : job.poses[i].name;
+        const std::string file = output_of(arguments.output, camera, frame, job.planes.files.front().aov);
+        if (!files.insert(file).second) refuse("--output", "'" + file + "' would be written twice");
+    }
+    for (const std::string& file : files) check_writable(file);
+}
+
 int run(const RenderArguments& arguments) {
     const Stopwatch total;
     RenderJob job = parse_render_arguments(arguments);
     if (static_cast<std::uint64_t>(job.render.width) * static_cast<std::uint64_t>(job.render.height) > job.max_picture)
         throw Error(ErrorCode::kLimit, "--size: more pixels than --max-pixels allows");
-    if (!arguments.output.empty())
-        check_writable(job.frames ? output_of(arguments.output, job.frames->first) : arguments.output);
-    if (!arguments.stats.empty()) check_writable(arguments.stats);
-
+    check_outputs(job, arguments);
     if (job.codec == Codec::kVideo) {
-        const std::string output = output_of(arguments.output, job.frames->first);
-        if (job.skip_existing && ::access(output.c_str(), F_OK) == 0) return kFine;
-        find_ffmpeg(output);
+        if (job.skip_existing && ::access(arguments.output.c_str(), F_OK) == 0) return kFine;
+        find_ffmpeg(arguments.output);
     }
 
     Deadline deadline(job.timeout, input_name(arguments.scene));

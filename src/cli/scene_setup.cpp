@@ -16,6 +16,9 @@ void place_view(RenderJob& job, Scene& scene) {
         turn_z_up(scene);
         if (view.eye) view.eye = turn_z_up(*view.eye);
         if (view.target) view.target = turn_z_up(*view.target);
+        const Mat4 turn{{1, 0, 0, 0, 0, 0, -1, 0, 0, 1, 0, 0, 0, 0, 0, 1}};
+        for (Pose& pose : job.poses) pose.view.camera_to_world = turn * *pose.view.camera_to_world;
+        job.render.label_from_world = transpose(turn);  // labels speak of the file's own axes
     }
     if (view.eye && !view.target) {
         const Bounds3 bounds = visible_bounds(scene);

@@ -1,6 +1,7 @@
 #include "cli/statistics.h"
 
 #include "cli/json_writer.h"
+#include "cli/planes.h"
 
 #include <tessera/version.h>
 
@@ -16,19 +17,39 @@ double peak_memory_mb() {
     return static_cast<double>(usage.ru_maxrss) / 1024;  // Linux counts KiB
 }
 
+namespace {
+
+std::string hash_text(std::uint64_t hash) {
+    char text[17];
+    std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(hash));
+    return text;
+}
+
+// Of the planes beside the colour that there are.
+void add_plane_hashes(JsonWriter& json, const RenderResult& result) {
+    json.key("plane_hashes").begin_object();
+    for (const Aov aov : {Aov::kAlpha, Aov::kDepth, Aov::kNormal, Aov::kShadingNormal, Aov::kUv, Aov::kPosition,
+                          Aov::kAlbedo, Aov::kNode, Aov::kMaterial, Aov::kPrimitive, Aov::kMotion, Aov::kMotionSeen})
+        if (const Image& plane = plane_of(aov, result); !plane.empty())
+            json.member(name(aov), std::string_view(hash_text(hash_pixels(plane))));
+    if (!result.linear.empty()) json.member("linear", std::string_view(hash_text(hash_pixels(result.linear))));
+    json.end_object();
+}
+
+}  // namespace
+
 std::string statistics_json(const std::string& scene, const RenderOptions& options, const RenderResult& result,
                             const CommandTimes& times) {
     const RenderStats& stats = result.stats;
-    char hash[17];
-    std::snprintf(hash, sizeof hash, "%016llx", static_cast<unsigned long long>(stats.color_hash));
 
     JsonWriter json;
     json.begin_object();
     json.member("version", TESSERA_VERSION).member("scene", scene);
     json.member("engine", name(stats.engine)).member("isa", name(stats.isa)).member("threads", stats.threads);
-    json.member("width", result.color.width()).member("height", result.color.height());
+    json.member("width", options.width).member("height", options.height);
     json.member("samples", options.samples).member("exposure", stats.exposure);
-    json.member("color_hash", std::string_view(hash));
+    json.member("color_hash", std::string_view(hash_text(stats.color_hash)));
+    add_plane_hashes(json, result);
     json.member("triangles", stats.triangles);
     json.key("culls").begin_object();
     json.member("frustum", stats.culled_frustum).member("backface", stats.culled_backface);

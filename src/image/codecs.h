@@ -1,6 +1,7 @@
 // The codecs behind decode_image() and write_image(), one pair of functions per format. They take
 // and give whole files in memory. Values are as stored: gamma, ICC profiles and orientation are
-// ignored, as glTF demands. All throw tessera::Error without a file name; the caller adds it.
+// ignored, as glTF demands, but alpha is made straight where 8 or 16 bits are premultiplied. All throw tessera::Error
+// without a file name; the caller adds it.
 #pragma once
 
 #include <tessera/image.h>
@@ -24,6 +25,23 @@ std::vector<std::byte> encode_png(const Image& image, const PngOptions& options,
 bool is_jpeg(std::span<const std::byte> file);
 ImageInfo read_jpeg_info(std::span<const std::byte> file);
 Image decode_jpeg(std::span<const std::byte> file, std::uint64_t max_pixels);
+
+bool is_hdr(std::span<const std::byte> file);
+ImageInfo read_hdr_info(std::span<const std::byte> file);
+Image decode_hdr(std::span<const std::byte> file, std::uint64_t max_pixels);
+
+bool is_webp(std::span<const std::byte> file);
+ImageInfo read_webp_info(std::span<const std::byte> file);
+Image decode_webp(std::span<const std::byte> file, std::uint64_t max_pixels);
+
+// Their headers are read and checked here; the rest needs the OpenImageIO module (module.h).
+bool is_exr(std::span<const std::byte> file);
+ImageInfo read_exr_info(std::span<const std::byte> file);
+Image decode_exr(std::span<const std::byte> file, std::uint64_t max_pixels);
+
+bool is_tiff(std::span<const std::byte> file);
+ImageInfo read_tiff_info(std::span<const std::byte> file);
+Image decode_tiff(std::span<const std::byte> file, std::uint64_t max_pixels, bool keep_16_bit);
 
 // Throws kLimit when a picture is larger than `max_pixels` or than an Image can be. Called with the
 // sides that a header claims, before anything is allocated for them.

@@ -6,6 +6,7 @@
 #include <new>
 
 #include "core/huge_pages.h"
+#include "image/srgb.h"
 
 namespace tessera {
 
@@ -54,6 +55,19 @@ std::uint64_t hash_pixels(const Image& image) {
         hash *= 0x100000001b3u;
     }
     return hash;
+}
+
+Image display_picture(const Image& linear) {
+    if (linear.format() != PixelFormat::kRgb32f)
+        throw Error(ErrorCode::kUsage, "a display picture is made of three linear channels");
+    Image picture(linear.width(), linear.height(), PixelFormat::kRgba8);
+    const float* in = linear.data<float>();
+    auto* out = picture.data<std::uint8_t>();
+    for (std::size_t i = 0, n = picture.bytes().size() / 4; i < n; ++i, in += 3, out += 4) {
+        for (int c = 0; c < 3; ++c) out[c] = static_cast<std::uint8_t>(srgb8_from_linear(in[c]));
+        out[3] = 255;
+    }
+    return picture;
 }
 
 Image quantize_true_color(const Image& image, int red_bits, int green_bits, int blue_bits) {

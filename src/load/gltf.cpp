@@ -55,6 +55,8 @@ void read_header(GltfDocument& document, Scene& scene) {
     scene.extras = root.raw_or_empty("extras");
     if (const std::optional<Json> required = root.find("extensionsRequired"))
         required->each([&](const Json& name, std::size_t) {
+            if (name.string() == "KHR_texture_basisu")
+                name.fail("the file needs the extension KHR_texture_basisu; pictures in KTX2 are not read");
             if (!is_known_extension(name.string()))
                 name.fail("the file needs the extension " + std::string(name.string()) + ", which is not supported");
             scene.extensions_required.emplace_back(name.string());

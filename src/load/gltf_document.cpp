@@ -12,7 +12,7 @@ constexpr std::array<std::string_view, static_cast<std::size_t>(GltfArray::kCoun
     "accessors", "animations", "buffers",  "bufferViews", "cameras", "images",  "materials",
     "meshes",    "nodes",      "samplers", "scenes",      "skins",   "textures"};
 
-constexpr std::array<std::string_view, 14> kKnownExtensions = {"KHR_draco_mesh_compression",
+constexpr std::array<std::string_view, 15> kKnownExtensions = {"KHR_draco_mesh_compression",
                                                                "EXT_meshopt_compression",
                                                                "EXT_mesh_gpu_instancing",
                                                                "KHR_materials_variants",
@@ -23,6 +23,7 @@ constexpr std::array<std::string_view, 14> kKnownExtensions = {"KHR_draco_mesh_c
                                                                "KHR_materials_unlit",
                                                                "KHR_materials_emissive_strength",
                                                                "KHR_texture_transform",
+                                                               "EXT_texture_webp",
                                                                "KHR_mesh_quantization",
                                                                "TESSERA_materials_phong",
                                                                "TESSERA_lights"};

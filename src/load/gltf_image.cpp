@@ -58,6 +58,24 @@ Sampler read_sampler(GltfDocument& document, const Json& json) {
     return sampler;
 }
 
+// Of the pictures that a texture offers: WebP first, as EXT_texture_webp wants it. There is no decoder of
+// KTX2 pictures (KHR_texture_basisu); the plain source stands in.
+int read_source(LoadContext& context, const Json& texture, std::size_t pictures) {
+    const int plain = texture.reference_or_none("source", pictures, "image");
+    if (const std::optional<Json> webp = find_extension(texture, "EXT_texture_webp")) {
+        const int source = webp->reference_or_none("source", pictures, "image");
+        if (source != kNone) return source;
+    }
+    if (find_extension(texture, "KHR_texture_basisu")) {
+        constexpr std::string_view kNotRead = ": pictures in KTX2 (KHR_texture_basisu) are not read";
+        context.warn(texture.place() + std::string(kNotRead) +
+                     (plain == kNone ? "; the texture is left out" : "; its plain source is used"));
+    } else if (plain == kNone) {
+        context.warn(texture.place() + ": the texture has no picture we can read");
+    }
+    return plain;
+}
+
 PictureFile gather(GltfDocument& document, std::size_t index) {
     const Json json = document.item(GltfArray::kImages, index);
     PictureFile file{index, json.place(), {}, {}, {}};
@@ -98,9 +116,7 @@ void read_textures(GltfDocument& document, Scene& scene) {
         texture.name = json.string_or("name");
         texture.extras = json.raw_or_empty("extras");
         texture.sampler = json.reference_or_none("sampler", scene.samplers.size(), "sampler");
-        texture.picture = json.reference_or_none("source", scene.pictures.size(), "image");
-        if (texture.picture == kNone)
-            document.context().warn(json.place() + ": the texture has no picture we can read");
+        texture.picture = read_source(document.context(), json, scene.pictures.size());
     });
     document.each(GltfArray::kImages, [&](const Json& json, std::size_t i) {
         Picture& picture = scene.pictures[i];

@@ -20,7 +20,6 @@ bool begins_with(std::span<const std::byte> bytes, std::string_view magic) {
 
 // Formats that are known but not read; scenes that use them are drawn without these pictures.
 std::string_view foreign_format(std::span<const std::byte> bytes) {
-    if (begins_with(bytes, "RIFF") && bytes.size() >= 12 && begins_with(bytes.subspan(8), "WEBP")) return "WebP";
     if (begins_with(bytes, "\xabKTX 20\xbb")) return "KTX2";
     if (begins_with(bytes, "DDS ")) return "DDS";
     if (bytes.size() >= 12 && begins_with(bytes.subspan(4), "ftypavif")) return "AVIF";

@@ -2,7 +2,7 @@
 #include "cli/json_writer.h"
 #include "cli/run_command.h"
 
-#include <tessera/image.h>
+#include <tessera/image_files.h>
 #include <tessera/planes.h>
 #include <tessera/version.h>
 
@@ -178,6 +178,65 @@ TEST_F(CliDiff, Fb1ArraysAreComparedInTheirUnit) {
     EXPECT_EQ(bad.code, 4);
     EXPECT_NE(bad.err.find("bad.npy"), std::string::npos) << bad.err;
     EXPECT_EQ(bad.error_lines(), 1);
+}
+
+// Floating-point pictures are compared in their own unit, whatever their format, and with the like only.
+TEST_F(CliDiff, FloatingPointInItsOwnUnit) {
+    tessera::Image image(8, 4, tessera::PixelFormat::kRgba32f);
+    for (std::size_t i = 0; i < 128; ++i) image.data<float>()[i] = i % 4 == 3 ? 1.0f : 2.0f;
+    tessera::write_image(in_folder("a.hdr"), image);
+    image.data<float>()[4] = 2.5f;
+    tessera::write_image(in_folder("b.hdr"), image);
+    const std::string a = in_folder("a.hdr"), b = in_folder("b.hdr");
+    const Outcome run = run_command({"diff", a, b, "-o", in_folder("d.png")});
+    EXPECT_EQ(run.code, 3);
+    EXPECT_NE(run.out.find("differing pixels: 1 of 32\nmax error:        0.5\n"), std::string::npos) << run.out;
+    const auto* marked = tessera::read_image(in_folder("d.png")).data<unsigned char>() + 4;
+    EXPECT_GT(marked[0], marked[1] + 50);
+    EXPECT_EQ(run_command({"diff", a, b, "--tolerance", "0.49"}).code, 3);
+    EXPECT_EQ(run_command({"diff", a, b, "--tolerance", "0.5"}).code, 0);
+    const Outcome mixed = run_command({"diff", a, in_folder("a.png")});
+    EXPECT_EQ(mixed.code, 4);
+    EXPECT_NE(mixed.err.find("no unit in common"), std::string::npos) << mixed.err;
+    EXPECT_EQ(run_command({"diff", in_folder("a.png"), a}).code, 4);
+    if (!tessera::has_image_module()) return;
+    // Another format, the same values; the colour of the HDR file is opaque.
+    tessera::write_image(in_folder("b.exr"), image);
+    EXPECT_EQ(run_command({"diff", b, in_folder("b.exr")}).code, 0);
+    EXPECT_EQ(run_command({"diff", in_folder("b.exr"), b}).code, 0);
+    EXPECT_EQ(run_command({"diff", in_folder("b.exr"), a}).code, 3);
+}
+
+// Two EXR files are the same when all their channels are.
+TEST_F(CliDiff, EveryChannelOfExr) {
+    if (!tessera::has_image_module()) GTEST_SKIP() << "built without the OpenImageIO module";
+    std::vector<float> depth(32, 1000);
+    std::vector<std::uint32_t> ids(32, 7);
+    const auto write = [&](const char* name, const char* channel) {
+        const tessera::ImageChannel channels[] = {{channel, tessera::ChannelType::kFloat, depth.data(), 4},
+                                                  {"id", tessera::ChannelType::kUint, ids.data(), 4}};
+        const std::vector<std::byte> file = tessera::encode_exr(8, 4, channels);
+        std::ofstream(in_folder(name), std::ios::binary)
+            .write(reinterpret_cast<const char*>(file.data()), static_cast<std::streamsize>(file.size()));
+    };
+    write("a.exr", "depth.Z");
+    write("other.exr", "depth.W");
+    depth[3] = 1002, ids[3] = 8, ids[9] = 9;
+    write("b.exr", "depth.Z");
+    const std::string a = in_folder("a.exr"), b = in_folder("b.exr");
+    const Outcome run = run_command({"diff", a, b});
+    EXPECT_EQ(run.code, 3);
+    EXPECT_NE(run.out.find("differing pixels: 2 of 32\nmax error:        2\n"), std::string::npos) << run.out;
+    EXPECT_EQ(run_command({"diff", a, b, "--tolerance", "2"}).code, 0);
+    EXPECT_EQ(run_command({"diff", a, a}).code, 0);
+    const Outcome names = run_command({"diff", a, in_folder("other.exr")});
+    EXPECT_EQ(names.code, 4);
+    EXPECT_NE(names.err.find("channels depth.W, id"), std::string::npos) << names.err;
+    // Without the module: one line that says what is missing.
+    const Outcome without = run_command({"diff", a, b}, {}, {"TESSERA_OIIO_MODULE=/no/such/module.so"});
+    EXPECT_EQ(without.code, 4);
+    EXPECT_EQ(without.error_lines(), 1);
+    EXPECT_NE(without.err.find("libopenimageio-dev"), std::string::npos) << without.err;
 }
 
 TEST_F(CliDiff, FailuresHaveTheirCodes) {

@@ -34,6 +34,7 @@ inline const std::vector<Home>& homes() {
         {"jerror.h", {"image"}},
         {"libdeflate.h", {"image"}},
         {"OpenImageIO/", {"image"}},
+        {"webp/", {"image"}},
         {"simdjson.h", {"load", "cli"}},
         {"minizip/", {"load"}},
         {"draco/", {"load"}},
