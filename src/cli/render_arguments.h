@@ -18,6 +18,7 @@ namespace tessera::cli {
 struct RenderArguments {
     std::string scene, output, stats;
     std::string size = "1024x768", engine = "raster", samples = "4", filter = "box", aov = "color";
+    std::string point_size = "2", line_width = "1";
     std::string time, animation, frames, fps = "24", turntable, variant;
     std::string camera, eye, target, up = "y", fov;
     std::string show, background = "white", exposure = "auto", tone_map = "neutral", encoding = "srgb", color_bits;
