@@ -56,9 +56,7 @@ InstanceView instance_at(const PreparedNode& node, const glm::dmat4& node_to_cam
 
 constexpr std::uint64_t kMostTriangles = 0xfffffffeu;
 
-[[noreturn]] void refuse_triangles() {
-    throw Error(ErrorCode::kLimit, "the scene has more than 4294967294 triangles");
-}
+[[noreturn]] void refuse_triangles() { throw Error(ErrorCode::kLimit, "the scene has more than 4294967294 triangles"); }
 
 // Consecutive points or segments of one primitive: an instance of their own.
 struct StrokeTask {

@@ -1,5 +1,6 @@
 // A frame: a prepared scene seen from one camera. Instances with their matrices, placed lights, the
-// projection, and the triangles that points and lines are in it. Points into the prepared scene and the scene, which must outlive it. Read-only once made.
+// projection, and the triangles that points and lines are in it. Points into the prepared scene and the scene, which
+// must outlive it. Read-only once made.
 #pragma once
 
 #include "geometry/prepared_scene.h"

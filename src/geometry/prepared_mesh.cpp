@@ -62,8 +62,7 @@ MeshView view_of(const PreparedMesh& mesh) {
 
 }  // namespace
 
-PreparedMesh::PreparedMesh(Primitive&& m, const Primitive& s)
-    : made(std::move(m)), source(&s), triangles(primitive()) {
+PreparedMesh::PreparedMesh(Primitive&& m, const Primitive& s) : made(std::move(m)), source(&s), triangles(primitive()) {
     view = view_of(*this);
     measure();
     if (view.triangle_count == 0) return;

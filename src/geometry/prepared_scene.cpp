@@ -103,7 +103,8 @@ void PreparedScene::place_nodes() {
 
 void PreparedScene::place(const Primitive& p, const PreparedMesh& mesh) {
     std::size_t material = p.material == kNone ? scene_.materials.size() : static_cast<std::size_t>(p.material);
-    if (!has_triangles(p.mode) && p.normals.empty()) material += lit_materials(scene_);
+    if (!has_triangles(p.mode) && p.normals.empty())
+        material = p.material == kNone && p.colors.empty() ? ink_material(scene_) : material + lit_materials(scene_);
     placements_.push_back({&mesh, static_cast<std::uint32_t>(material)});
 }
 
@@ -126,7 +127,7 @@ const PreparedMesh& PreparedScene::deform(int node, const Primitive& p, const Jo
 }
 
 std::vector<bool> PreparedScene::used_materials() const {
-    std::vector<bool> used(2 * lit_materials(scene_), false);
+    std::vector<bool> used(ink_material(scene_) + 1, false);
     for (const Placement& p : placements_) used[p.material] = true;
     return used;
 }

@@ -17,14 +17,15 @@
 
 namespace tessera {
 
-// Shading has each material of the scene, the default one after them, and then all of these once more without
-// lighting, for points and lines that have no normals.
+// Shading has each material of the scene, the default one after them, then all of these once more without lighting,
+// for points and lines that have no normals, and last the ink of those that have no colour either.
 inline std::size_t lit_materials(const Scene& scene) { return scene.materials.size() + 1; }
+inline std::size_t ink_material(const Scene& scene) { return 2 * lit_materials(scene); }
 
 // A mesh at a node.
 struct Placement {
     const PreparedMesh* mesh;
-    std::uint32_t material;  // index into the scene's materials; one past them for none; then the same again, unlit
+    std::uint32_t material;  // as lit_materials() says
 };
 
 // What a node of the active scene carries. A node whose mesh is skinned in part comes twice.

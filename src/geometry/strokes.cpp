@@ -47,8 +47,8 @@ float next_float(float value, bool up) {
     return std::bit_cast<float>((value > 0) == up ? bits + 1 : bits - 1);
 }
 
-// The x of clip space that snaps to `target`, or the y where `sign` is -1. Rounding alone may miss it by one, at the far
-// side of large pictures.
+// The x of clip space that snaps to `target`, or the y where `sign` is -1. Rounding alone may miss it by one, at the
+// far side of large pictures.
 float unsnap(std::int32_t target, float w, float pixels, double sign) {
     const double half = 128.0 * static_cast<double>(pixels);
     auto value = static_cast<float>(sign * (target - half) / half * static_cast<double>(w));
@@ -124,7 +124,8 @@ struct StrokeMesh::End {
     float third;  // of the space's coordinates
     Source source;
 
-    End(const ClipVertex<float>& v, std::uint32_t vertex) : clip{v.x, v.y, v.z, v.w}, at{}, third(0), source{vertex, vertex, 0} {}
+    End(const ClipVertex<float>& v, std::uint32_t vertex)
+        : clip{v.x, v.y, v.z, v.w}, at{}, third(0), source{vertex, vertex, 0} {}
 
     // False where it can be nowhere.
     bool place(const StrokeSpace& space) {
@@ -220,8 +221,8 @@ void StrokeMesh::add_segment(std::uint32_t element, std::uint32_t from, std::uin
     add_triangle(first, first + 1 + turned, first + 2 - turned);
     add_triangle(first, first + 2 + turned, first + 3 - turned);
     elements_.push_back(element);
-    ties_.push_back(static_cast<std::uint8_t>((dx < 0 ? kTieLeft : 0) | (dy < 0 ? kTieUp : 0) |
-                                              (x_major ? kTieDownFirst : 0)));
+    ties_.push_back(
+        static_cast<std::uint8_t>((dx < 0 ? kTieLeft : 0) | (dy < 0 ? kTieUp : 0) | (x_major ? kTieDownFirst : 0)));
 }
 
 void StrokeMesh::clear() {

@@ -32,10 +32,10 @@ struct StrokeSpace {
     float to_clip[16], to_camera[12];  // from that space; rows, as InstanceView has them
     float width, height;               // of the picture, pixels
     bool orthographic;
-    double inverse_scale;               // times w of the instances' clip space: the distance along the axis
+    double inverse_scale;  // times w of the instances' clip space: the distance along the axis
     // Half pictures from the centre: lines are cut there, and points beyond are not seen.
     double guard, point_guard;
-    std::int32_t line_low, line_high;   // from a line to its sides
+    std::int32_t line_low, line_high;    // from a line to its sides
     std::vector<PictureOffset> corners;  // of a point, counter-clockwise as a viewer sees them
 };
 
@@ -65,7 +65,9 @@ class StrokeMesh : public DrawnMesh {
     void add_point(std::uint32_t element, std::uint32_t vertex, const StrokeSpace& space);
     void add_segment(std::uint32_t element, std::uint32_t from, std::uint32_t to, const StrokeSpace& space);
     void add_vertex(PictureOffset at, const End& end, const StrokeSpace& space);
-    void add_triangle(std::uint32_t a, std::uint32_t b, std::uint32_t c) { triangles_.insert(triangles_.end(), {a, b, c}); }
+    void add_triangle(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+        triangles_.insert(triangles_.end(), {a, b, c});
+    }
     ClipVertex<float> clip_vertex(std::uint32_t vertex) const;
     void set_view(std::uint32_t triangles_per_element, bool lines);
 

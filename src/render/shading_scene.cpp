@@ -52,6 +52,9 @@ MaterialView convert(const Material& m) {
     return v;
 }
 
+// What nothing gives a colour: to be seen on white and on black.
+constexpr float kInk = 0.2f;
+
 // The material where no light counts: its colour.
 MaterialView without_lighting(const MaterialView& lit) {
     MaterialView v = lit;
@@ -62,7 +65,7 @@ MaterialView without_lighting(const MaterialView& lit) {
 }
 
 std::vector<bool> materials_of(const Scene& scene, const Frame& frame) {
-    std::vector<bool> used(2 * lit_materials(scene), false);
+    std::vector<bool> used(ink_material(scene) + 1, false);
     for (const InstanceView& i : frame.instances) used[i.material] = true;
     return used;
 }
@@ -125,6 +128,9 @@ ShadingScene::ShadingScene(const Scene& scene, const std::vector<bool>& used_vie
             input.plain = std::equal(input.transform, input.transform + 6, kIdentity);
         }
     for (std::size_t m = 0; m < lit; ++m) materials_.push_back(without_lighting(materials_[m]));
+    MaterialView ink = materials_.back();
+    for (int i = 0; i < 3; ++i) ink.base_color[i] = kInk;
+    materials_.push_back(ink);
 }
 
 ShadingScene::ShadingScene(const Scene& scene, const Frame& frame, const RenderOptions& options, Arena& arena,
