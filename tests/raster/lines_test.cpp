@@ -4,6 +4,7 @@
 
 #include <tessera/renderer.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <cstdlib>
 #include <random>
@@ -90,8 +91,8 @@ Pixels defined(const Line& line, int width, int height, std::int64_t units) {
     return pixels;
 }
 
-// The midpoint algorithm from end to end, in steps of one pixel along the major axis (Foley et al., section 3.2.2), with
-// ends anywhere on the grid of 1/256 pixel: E keeps the row, NE takes the next.
+// The midpoint algorithm from end to end, in steps of one pixel along the major axis (Foley et al., section 3.2.2),
+// with ends anywhere on the grid of 1/256 pixel: E keeps the row, NE takes the next.
 Pixels midpoint(const Line& line, int width, int height) {
     Pixels pixels;
     std::int64_t x = line.from.x, y = line.from.y, dx = line.to.x - x, dy = line.to.y - y;
@@ -131,9 +132,7 @@ std::vector<Line> random_lines(int count, int width, int height, unsigned seed) 
     std::vector<Line> lines;
     for (int i = 0; i < count; ++i) {
         const std::int64_t grid = i % 2 == 0 ? 1 : i % 4 == 1 ? 128 : 64;
-        const auto end = [&] {
-            return Position{below(256 * width / grid) * grid, below(256 * height / grid) * grid};
-        };
+        const auto end = [&] { return Position{below(256 * width / grid) * grid, below(256 * height / grid) * grid}; };
         Line line{end(), end()};
         if (i % 3 == 0) {  // short
             line.to = {line.from.x + (below(24) - 12) * grid, line.from.y + (below(24) - 12) * grid};
@@ -232,6 +231,32 @@ TEST(Lines, RAS3_StripsAndLoopsDrawSharedEndsOnce) {
                 }
             }
         }
+}
+
+// What is left out because it is outside was outside; the parts inside do not change.
+TEST(Lines, RAS3_EndsOutsideOfThePicture) {
+    for (Line line : random_lines(400, 192, 192, 3)) {
+        for (Position* p : {&line.from, &line.to}) p->x -= 64 * 256, p->y -= 64 * 256;
+        const Pixels expected = midpoint(line, 64, 64);
+        ASSERT_EQ(drawn(line, 64, 64, 1, Engine::kRaster), expected) << text(line);
+        ASSERT_EQ(drawn(line, 64, 64, 1, Engine::kReferenceRaster), expected) << text(line);
+        ASSERT_EQ(drawn(line, 64, 64, 2.5f, Engine::kRaster), defined(line, 64, 64, 640)) << text(line);
+    }
+}
+
+// Far outside lines are cut, and the ends snap anew: within 1/256 pixel of where they were.
+TEST(Lines, RAS3_EndsFarOutsideAreCut) {
+    std::size_t covered = 0;
+    for (Line line : random_lines(200, 4096, 4096, 5)) {
+        for (Position* p : {&line.from, &line.to}) p->x -= 2048 * 256, p->y -= 2048 * 256;
+        const Pixels got = drawn(line, 64, 64, 2, Engine::kRaster);
+        EXPECT_EQ(got, drawn(line, 64, 64, 2, Engine::kReferenceRaster)) << text(line);
+        const Pixels least = defined(line, 64, 64, 512 - 4), most = defined(line, 64, 64, 512 + 4);
+        EXPECT_TRUE(std::includes(got.begin(), got.end(), least.begin(), least.end())) << text(line);
+        EXPECT_TRUE(std::includes(most.begin(), most.end(), got.begin(), got.end())) << text(line);
+        covered += got.size();
+    }
+    EXPECT_GT(covered, 200u);
 }
 
 TEST(Lines, RAS3_WithoutLengthNothingIsDrawn) {
