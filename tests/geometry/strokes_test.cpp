@@ -100,7 +100,8 @@ void check_lines(const std::vector<Vec3>& ends, const View& view, int width, int
                 const SnappedVertex low = q.v[end ? 3 : 0], high = q.v[end ? 2 : 1];
                 ASSERT_EQ(high.x - low.x, steep ? units : 0);
                 ASSERT_EQ(high.y - low.y, steep ? 0 : units);
-                const SnappedVertex middle = snapped(frame, frame.instances[0], ends[2 * i.mesh.element_of(triangle) + end]);
+                const SnappedVertex middle =
+                    snapped(frame, frame.instances[0], ends[2 * i.mesh.element_of(triangle) + end]);
                 if (!in_guard(middle, width, height)) continue;  // it may have been cut
                 ASSERT_EQ(low.x, middle.x - (steep ? units / 2 : 0));
                 ASSERT_EQ(low.y, middle.y - (steep ? 0 : units / 2));
@@ -131,8 +132,8 @@ TEST(Strokes, PointsAreRoundAndStandWhereTheyAre) {
     for (const float size : {0.1f, 1.0f, 2.0f, 2.1f, 3.0f, 7.5f, 40.0f, 256.0f})
         for (int kind = 0; kind < 4; ++kind) {
             const int width = 2048, height = 1536;
-            const Frame frame = make_frame(scene_of(PrimitiveMode::kPoints, centres), view_of(kind), width, height,
-                                           {size, 1});
+            const Frame frame =
+                make_frame(scene_of(PrimitiveMode::kPoints, centres), view_of(kind), width, height, {size, 1});
             const std::uint32_t corners = frame.instances[1].mesh.triangles_per_element + 2;
             EXPECT_EQ(corners == 4, size <= 2);
             std::size_t checked = 0;

@@ -74,7 +74,8 @@ TEST(Strokes, CARD3_ManyShortLinesInOneVector) {
     Primitive p;
     p.mode = PrimitiveMode::kLines;
     for (int i = 0; i < 20000; ++i) {
-        const float x = static_cast<float>(random() % 2048) / 1024 - 1, y = static_cast<float>(random() % 2048) / 1024 - 1;
+        const float x = static_cast<float>(random() % 2048) / 1024 - 1,
+                    y = static_cast<float>(random() % 2048) / 1024 - 1;
         p.positions.push_back({x, y, 0});
         p.positions.push_back({x + static_cast<float>(random() % 65) / 1024 - 0.03125f,
                                y + static_cast<float>(random() % 65) / 1024 - 0.03125f, 0});

@@ -131,8 +131,7 @@ TEST(Agreement, RAS3_RasterAndRaysAgreeOnPointsAndLines) {
             wires.mode = PrimitiveMode::kLineStrip;
             scene.meshes[0].primitives.push_back(dots);
             scene.meshes[0].primitives.push_back(wires);
-            const View view =
-                inside ? test::look({0.2f, 0.1f, 0}, {1, 0, 0}) : test::look({0, 0, 2.2f}, {0, 0, 0});
+            const View view = inside ? test::look({0.2f, 0.1f, 0}, {1, 0, 0}) : test::look({0, 0, 2.2f}, {0, 0, 0});
             const Agreement a = agree(std::move(scene), view, 320, 180, {size, size / 2});
             EXPECT_EQ(a.unexplained, 0u) << a.first_unexplained;
             // Lines on the pixel grid have many centres on their edges.
