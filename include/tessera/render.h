@@ -63,6 +63,9 @@ struct RasterTuning {
     bool count_samples = true;   // samples_tested and fragments_passed; costs a few percent
 };
 
+// Sizes of points and lines, in pixels.
+inline constexpr float kLeastStroke = 0.1f, kMostStroke = 256.0f;
+
 struct RenderOptions {
     int width = 1024, height = 768;  // pixels, 1 .. kMaxImageSide
     Engine engine = Engine::kRaster;
@@ -74,6 +77,8 @@ struct RenderOptions {
     std::optional<float> ambient;
     bool shadows = true;               // hard shadows where the engine has them
     int samples = 4;                   // per pixel, 1 .. 256, at fixed positions of 1/256 pixel
+    float point_size = 2;              // pixels, diameter of points: discs that face the camera, squares up to 2
+    float line_width = 1;              // pixels, along the minor axis of the picture (docs/rasterizer.md)
     std::optional<float> exposure_ev;  // radiance * 2^ev; unset: automatic
     ToneMap tone_map = ToneMap::kNeutral;
     PixelFilter filter = PixelFilter::kBox;
@@ -111,7 +116,8 @@ struct RenderStats {
     Engine engine = Engine::kReferenceRaster;
     Isa isa = Isa::kScalar;
     int threads = 1;
-    std::uint64_t triangles = 0;  // submitted
+    std::uint64_t triangles = 0;          // submitted, those made of points and lines included
+    std::uint64_t points = 0, lines = 0;  // of the scene; the triangles are of those in view
     std::uint64_t culled_frustum = 0, culled_backface = 0, culled_degenerate = 0, clipped = 0;
     // The tile rasterizer's: triangles that reach no sample, those drawn as masks and by blocks; samples
     // tested for depth; blocks of 8x8 pixels filled, and left out by hierarchical Z.
@@ -133,7 +139,7 @@ struct RenderResult {
                       // filtered: kMitchell may leave radiances a little below 0
     Image alpha;      // kF32, the mean alpha of the pixel's samples, which is that of `linear`
     Image depth;      // kF32, metres along the view axis; infinite where nothing was hit
-    Image primitive;  // kU32, 1 + number of the triangle in submission order; 0: none
+    Image primitive;  // kU32, 1 + number of the triangle, line or point in submission order; 0: none
     Image node;       // kU32, 1 + index into Scene::nodes; 0: none
     Image material;   // kU32, 1 + index into Scene::materials, or 1 + their number for the default; 0: none
     // kRgb32f, unit, on the viewer's side: interpolated, and bent by the normal map. 0 where nothing was hit, like

@@ -159,6 +159,8 @@ void add_picture_options(CLI::App& app, RenderArguments& a) {
     option("Picture", "--samples", a.samples, "N", "samples per pixel, 1 .. 256 (default 4)");
     option("Picture", "--filter", a.filter, "NAME",
            "box (default: the mean of a pixel's samples), tent, gaussian or mitchell, which weigh its neighbours' too");
+    option("Picture", "--point-size", a.point_size, "PX", "diameter of points in pixels, 0.1 .. 256 (default 2)");
+    option("Picture", "--line-width", a.line_width, "PX", "width of lines in pixels, 0.1 .. 256 (default 1)");
     option("Picture", "--show", a.show, "STAGE",
            "draw a stage of the rasterizer in false colours instead: bins, hiz, overdraw or cost");
     option("Picture", "--background", a.background, "COLOUR",
@@ -252,6 +254,8 @@ RenderJob parse_render_arguments(const RenderArguments& a) {
                                          {"tent", PixelFilter::kTent},
                                          {"gaussian", PixelFilter::kGaussian},
                                          {"mitchell", PixelFilter::kMitchell}});
+    render.point_size = static_cast<float>(parse_number("--point-size", a.point_size, 0.1, 256));
+    render.line_width = static_cast<float>(parse_number("--line-width", a.line_width, 0.1, 256));
     render.show = parse_stage(a, render);
     render.background = parse_background("--background", a.background);
     if (a.exposure != "auto") render.exposure_ev = static_cast<float>(parse_number("--exposure", a.exposure, -40, 40));

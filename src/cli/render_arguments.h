@@ -22,6 +22,7 @@ struct RenderArguments {
     std::string size = "1024x768", engine = "raster", samples = "4", filter = "box";
     PlaneTexts planes;
     std::string depth = "planar", space = "world";
+    std::string point_size = "2", line_width = "1";
     std::string time, animation, frames, fps = "24", turntable, variant;
     std::string camera, eye, target, up = "y", fov, intrinsics, poses;
     std::string show, background = "white", exposure = "auto", tone_map = "neutral", encoding = "srgb";

@@ -66,7 +66,6 @@ struct MeshPoints {
 MeshPoints drawn_points(const Mesh& mesh) {
     MeshPoints result{true, {}, {}};
     for (const Primitive& primitive : mesh.primitives) {
-        if (!is_drawn(primitive.mode)) continue;
         const std::vector<Vec3> used = used_positions(primitive);
         result.points.insert(result.points.end(), used.begin(), used.end());
     }

@@ -6,6 +6,7 @@
 #include "simd/math.h"
 
 #include <algorithm>
+#include <atomic>
 
 namespace tessera {
 namespace {
@@ -53,6 +54,69 @@ InstanceView instance_at(const PreparedNode& node, const glm::dmat4& node_to_cam
     return instance;
 }
 
+constexpr std::uint64_t kMostTriangles = 0xfffffffeu;
+
+[[noreturn]] void refuse_triangles() { throw Error(ErrorCode::kLimit, "the scene has more than 4294967294 triangles"); }
+
+// Consecutive points or segments of one primitive: an instance of their own.
+struct StrokeTask {
+    const Primitive* primitive;
+    std::uint32_t first, count;
+    std::size_t instance;
+};
+constexpr std::uint32_t kTaskElements = 16384;
+
+// Returns how many.
+std::size_t add_tasks(const Primitive& primitive, std::uint32_t elements, std::size_t instance,
+                      std::vector<StrokeTask>& tasks) {
+    const std::size_t before = tasks.size();
+    for (std::uint32_t first = 0, part = 0; first < elements; first += part) {
+        part = std::min(kTaskElements, elements - first);
+        tasks.push_back({&primitive, first, part, instance++});
+    }
+    return tasks.size() - before;
+}
+
+// Triangles for points and lines in place of them.
+void make_strokes(const StrokeSpace& space, const std::vector<StrokeTask>& tasks, std::uint64_t max_bytes, Arena* arena,
+                  Frame& frame) {
+    while (frame.strokes.size() < tasks.size()) frame.strokes.push_back(std::make_unique<StrokeMesh>());
+    std::atomic<std::uint64_t> bytes{0};
+    const auto make = [&](std::size_t t) {
+        const StrokeTask& task = tasks[t];
+        StrokeMesh& mesh = *frame.strokes[t];
+        InstanceView& instance = frame.instances[task.instance];
+        mesh.make(instance, *task.primitive, task.first, task.count, space);
+        if ((bytes += mesh.bytes()) > max_bytes)
+            throw Error(ErrorCode::kLimit, "points and lines need more memory than the limit allows");
+        instance.mesh = mesh.view;
+        std::copy_n(space.to_clip, 16, instance.object_to_clip);
+        std::copy_n(space.to_camera, 12, instance.object_to_camera);
+        instance.handedness = instance.skin_side = 1;  // they are made so that their fronts are seen
+        frame.prepared[task.instance] = &mesh;
+    };
+    if (arena) return arena->for_each(tasks.size(), make);
+    for (std::size_t t = 0; t < tasks.size(); ++t) make(t);
+}
+
+// Numbers the triangles in the order of submission; instances without any go.
+void number_triangles(Frame& frame) {
+    std::uint64_t triangles = 0;
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < frame.instances.size(); ++i) {
+        const InstanceView& instance = frame.instances[i];
+        if (instance.mesh.triangle_count == 0) continue;
+        frame.instances[kept] = instance;
+        frame.instances[kept].first_triangle = static_cast<std::uint32_t>(triangles);
+        frame.prepared[kept++] = frame.prepared[i];
+        triangles += instance.mesh.triangle_count;
+        if (triangles > kMostTriangles) refuse_triangles();
+    }
+    frame.instances.resize(kept);
+    frame.prepared.resize(kept);
+    frame.triangle_count = static_cast<std::uint32_t>(triangles);
+}
+
 }  // namespace
 
 const InstanceView& Frame::instance_of(std::uint32_t number) const {
@@ -61,7 +125,7 @@ const InstanceView& Frame::instance_of(std::uint32_t number) const {
     return *(after - 1);
 }
 
-void make_frame(PreparedScene& scene, const View& view, int width, int height, Frame& frame) {
+void make_frame(PreparedScene& scene, const View& view, int width, int height, const StrokeStyle& style, Frame& frame) {
     const FrameCamera camera = camera_of(scene, view, width, height);
     frame.projection = camera.projection;
     frame.instances.clear();
@@ -71,8 +135,9 @@ void make_frame(PreparedScene& scene, const View& view, int width, int height, F
     frame.node_of_instance.clear();
     frame.node_to_clip.clear();
     frame.world_to_camera = camera.world_to_camera;
-    std::uint64_t triangles = 0;
-    bool skipped_mode = false;
+    frame.points = frame.lines = 0;
+    std::uint64_t primitives = 0;
+    std::vector<StrokeTask> tasks;
     for (std::size_t n = 0; n < scene.nodes().size(); ++n) {
         const PreparedNode& node = scene.nodes()[n];
         const glm::dmat4 node_to_camera = camera.world_to_camera * node.world;
@@ -88,28 +153,35 @@ void make_frame(PreparedScene& scene, const View& view, int width, int height, F
             frame.warnings.push_back("node " + std::to_string(node.node) + ": its placement overflows; not drawn");
             continue;
         }
-        skipped_mode = skipped_mode || node.has_undrawn;
         InstanceView instance = instance_at(node, node_to_camera, node_to_clip);
         for (std::uint32_t i = node.first; i < node.placement_end; ++i) {
             const Placement& placement = scene.placements()[i];
             instance.mesh = placement.mesh->view;
-            instance.first_triangle = static_cast<std::uint32_t>(triangles);
+            instance.first_primitive = static_cast<std::uint32_t>(primitives);
             instance.material = placement.material;
-            triangles += instance.mesh.triangle_count;
-            if (triangles > 0xfffffffeu) throw Error(ErrorCode::kLimit, "the scene has more than 4294967294 triangles");
-            frame.instances.push_back(instance);
-            frame.prepared.push_back(placement.mesh);
-            if (frame.keep_nodes) frame.node_of_instance.push_back(static_cast<std::uint32_t>(n));
+            const Primitive& primitive = placement.mesh->primitive();
+            const std::uint64_t elements = element_count(primitive);
+            primitives += elements;
+            if (primitives > kMostTriangles) refuse_triangles();
+            std::size_t copies = 1;  // of strokes one for each task, which are filled below
+            if (!has_triangles(primitive.mode)) {
+                (primitive.mode == PrimitiveMode::kPoints ? frame.points : frame.lines) += elements;
+                copies = add_tasks(primitive, static_cast<std::uint32_t>(elements), frame.instances.size(), tasks);
+            }
+            frame.instances.insert(frame.instances.end(), copies, instance);
+            frame.prepared.insert(frame.prepared.end(), copies, placement.mesh);
+            if (frame.keep_nodes)
+                frame.node_of_instance.insert(frame.node_of_instance.end(), copies, static_cast<std::uint32_t>(n));
         }
     }
-    frame.triangle_count = static_cast<std::uint32_t>(triangles);
-    if (skipped_mode) frame.warnings.push_back("points and lines are not drawn");
+    if (!tasks.empty()) make_strokes(StrokeSpace(camera, style), tasks, style.max_bytes, scene.arena(), frame);
+    number_triangles(frame);
 }
 
-Frame make_frame(const Scene& scene, const View& view, int width, int height) {
+Frame make_frame(const Scene& scene, const View& view, int width, int height, const StrokeStyle& style) {
     Frame frame;
     frame.owned = std::make_shared<PreparedScene>(scene);
-    make_frame(*frame.owned, view, width, height, frame);
+    make_frame(*frame.owned, view, width, height, style, frame);
     return frame;
 }
 

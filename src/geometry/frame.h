@@ -1,9 +1,11 @@
 // A frame: a prepared scene seen from one camera. Instances with their matrices, placed lights, the
-// projection. Points into the prepared scene and the scene, which must outlive it. Read-only once made.
+// projection, and the triangles that points and lines are in it. Points into the prepared scene and the scene, which
+// must outlive it. Read-only once made.
 #pragma once
 
 #include "geometry/prepared_scene.h"
 #include "geometry/projection.h"
+#include "geometry/strokes.h"
 
 #include <cstdint>
 #include <memory>
@@ -20,10 +22,12 @@ struct PlacedLight {
 struct Frame {
     ProjectionView projection{};
     glm::dmat4 world_to_camera{1.0};
-    std::vector<InstanceView> instances;        // in order of submission
-    std::vector<const PreparedMesh*> prepared;  // per instance
-    std::vector<PlacedLight> lights;            // in order of the nodes
-    std::uint32_t triangle_count = 0;
+    std::vector<InstanceView> instances;     // in order of submission
+    std::vector<const DrawnMesh*> prepared;  // per instance
+    std::vector<PlacedLight> lights;         // in order of the nodes
+    std::uint32_t triangle_count = 0;        // those of points and lines included, as far as these are in view
+    std::uint64_t points = 0, lines = 0;     // in view or not
+    std::vector<std::unique_ptr<StrokeMesh>> strokes;  // kept from frame to frame
     std::vector<std::string> warnings;
     std::shared_ptr<PreparedScene> owned;  // of a frame that was made from a scene alone
 
@@ -38,10 +42,11 @@ struct Frame {
 };
 
 // Evaluates the active scene for a picture of width x height pixels into `frame`, whose memory is used again.
-// Throws kUsage for views that make no sense and kLimit for more than 2^32 - 2 triangles.
-void make_frame(PreparedScene& scene, const View& view, int width, int height, Frame& frame);
+// Throws kUsage for views that make no sense and kLimit for more than 2^32 - 2 triangles, or points and lines beyond
+// the memory limit.
+void make_frame(PreparedScene& scene, const View& view, int width, int height, const StrokeStyle& style, Frame& frame);
 // The same for one picture of a scene.
-Frame make_frame(const Scene& scene, const View& view, int width, int height);
+Frame make_frame(const Scene& scene, const View& view, int width, int height, const StrokeStyle& style = {});
 
 // Whether the whole box lies outside one plane of the view volume (per-object frustum culling). Never
 // true for a box of which any rounding could show a pixel.

@@ -20,7 +20,7 @@ void compute_flat_normals(std::span<const Vec3> positions, std::span<Vec3> norma
 }
 
 Primitive with_flat_normals(const Primitive& primitive) {
-    if (!is_drawn(primitive.mode)) return primitive;
+    if (!has_triangles(primitive.mode)) return primitive;
     Primitive result = gather_vertices(primitive, TriangleList(primitive).indices());
     result.tangents.clear();
     for (MorphTarget& target : result.targets) {

@@ -36,6 +36,7 @@ Primitive with_tangents_for(const Primitive& p, const TextureRef& normal_map) {
 // Adds the normals and tangents that drawing with this material needs and the file lacks.
 Primitive complete(const Primitive& p, const Material* material) {
     Primitive made;
+    if (!has_triangles(p.mode)) return made;
     if (p.normals.empty()) made = with_flat_normals(p);
     const TextureRef* normal_map = material ? &material->texture(TextureSlot::kNormal) : nullptr;
     if (normal_map && normal_map->texture != kNone) {
@@ -61,8 +62,8 @@ MeshView view_of(const PreparedMesh& mesh) {
 
 }  // namespace
 
-PreparedMesh::PreparedMesh(Primitive&& m, const Primitive& s)
-    : made(std::move(m)), source(&s), triangles(primitive()), view(view_of(*this)) {
+PreparedMesh::PreparedMesh(Primitive&& m, const Primitive& s) : made(std::move(m)), source(&s), triangles(primitive()) {
+    view = view_of(*this);
     measure();
     if (view.triangle_count == 0) return;
     std::uint32_t low = view.triangles[0], high = low;

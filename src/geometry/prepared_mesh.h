@@ -8,8 +8,16 @@
 
 namespace tessera {
 
-// One primitive of a mesh, prepared once for all of its instances.
-struct PreparedMesh {
+// What engines draw.
+struct DrawnMesh {
+    MeshView view{};
+    Bounds3 bounds;                                       // of all vertices, in the view's space
+    std::uint32_t lowest_vertex = 0, highest_vertex = 0;  // that a triangle names
+};
+
+// One primitive of a mesh, prepared once for all of its instances. Points and lines have no triangles here: what is
+// drawn of them is made for each frame (strokes.h).
+struct PreparedMesh : DrawnMesh {
     PreparedMesh(Primitive&& made, const Primitive& source);
     PreparedMesh(const PreparedMesh&) = delete;
     PreparedMesh& operator=(const PreparedMesh&) = delete;
@@ -20,10 +28,7 @@ struct PreparedMesh {
     Primitive made;           // with normals and tangents, where the source lacked them; else empty
     const Primitive* source;  // the scene's
     TriangleList triangles;   // of primitive()
-    Bounds3 bounds;           // object space
-    MeshView view{};
-    bool deformed = false;                                // its vertices are written over as the scene moves
-    std::uint32_t lowest_vertex = 0, highest_vertex = 0;  // that a triangle names
+    bool deformed = false;    // its vertices are written over as the scene moves
 };
 
 // With the normals and tangents that drawing with this material (null: none) needs and the file lacks.

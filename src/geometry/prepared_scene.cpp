@@ -69,19 +69,16 @@ void PreparedScene::place_nodes() {
         const bool instanced = node.mesh != kNone && !node.instances.empty();
         if (instanced && node.light != kNone) {
             const auto end = static_cast<std::uint32_t>(placements_.size());
-            nodes_.push_back({index, node.light, false, false, end, end, world});
+            nodes_.push_back({index, node.light, false, end, end, world});
         }
         const std::size_t copies = instanced ? node.instances.size() : 1;
         for (std::size_t copy = 0; copy < copies; ++copy) {
             const auto first = static_cast<std::uint32_t>(placements_.size());
-            PreparedNode prepared{index, instanced ? kNone : node.light, node.mesh != kNone, false, first, first,
-                                  world};
+            PreparedNode prepared{index, instanced ? kNone : node.light, node.mesh != kNone, first, first, world};
             if (instanced) prepared.world = world * instance_matrix(node.instances[copy]);
             if (prepared.has_mesh)
                 for (const Primitive& p : scene_.meshes[static_cast<std::size_t>(node.mesh)].primitives) {
-                    if (!is_drawn(p.mode)) {
-                        prepared.has_undrawn = true;
-                    } else if (triangle_count(p) == 0) {
+                    if (element_count(p) == 0) {
                         continue;
                     } else if (is_skinned(scene_, node, p)) {
                         if (copy == 0) skinned.push_back(&p);
@@ -99,13 +96,15 @@ void PreparedScene::place_nodes() {
             joint_matrices(scene_.skins[static_cast<std::size_t>(node.skin)], transforms_.world);
         const auto begin = static_cast<std::uint32_t>(placements_.size());
         for (const Primitive* p : skinned) place(*p, deform(index, *p, &joints));
-        nodes_.push_back({index, kNone, true, false, begin, static_cast<std::uint32_t>(placements_.size()),
+        nodes_.push_back({index, kNone, true, begin, static_cast<std::uint32_t>(placements_.size()),
                           joints.object_to_world, joints.mirrored});
     }
 }
 
 void PreparedScene::place(const Primitive& p, const PreparedMesh& mesh) {
-    const int material = p.material == kNone ? static_cast<int>(scene_.materials.size()) : p.material;
+    std::size_t material = p.material == kNone ? scene_.materials.size() : static_cast<std::size_t>(p.material);
+    if (!has_triangles(p.mode) && p.normals.empty())
+        material = p.material == kNone && p.colors.empty() ? ink_material(scene_) : material + lit_materials(scene_);
     placements_.push_back({&mesh, static_cast<std::uint32_t>(material)});
 }
 
@@ -128,7 +127,7 @@ const PreparedMesh& PreparedScene::deform(int node, const Primitive& p, const Jo
 }
 
 std::vector<bool> PreparedScene::used_materials() const {
-    std::vector<bool> used(scene_.materials.size() + 1, false);
+    std::vector<bool> used(ink_material(scene_) + 1, false);
     for (const Placement& p : placements_) used[p.material] = true;
     return used;
 }

@@ -17,17 +17,21 @@
 
 namespace tessera {
 
+// Shading has each material of the scene, the default one after them, then all of these once more without lighting,
+// for points and lines that have no normals, and last the ink of those that have no colour either.
+inline std::size_t lit_materials(const Scene& scene) { return scene.materials.size() + 1; }
+inline std::size_t ink_material(const Scene& scene) { return 2 * lit_materials(scene); }
+
 // A mesh at a node.
 struct Placement {
     const PreparedMesh* mesh;
-    std::uint32_t material;  // index into the scene's materials; one past them for none
+    std::uint32_t material;  // as lit_materials() says
 };
 
 // What a node of the active scene carries. A node whose mesh is skinned in part comes twice.
 struct PreparedNode {
     int node, light;                     // indices; light may be kNone
     bool has_mesh;                       // even if nothing of it is drawn
-    bool has_undrawn;                    // points or lines
     std::uint32_t first, placement_end;  // range of PreparedScene::placements
     glm::dmat4 world;                    // object to world, for its meshes
     bool mirrored = false;               // the skin mirrors, which `world` does not say
@@ -45,10 +49,11 @@ class PreparedScene {
     void move_to(const Moment& moment);
 
     const Scene& scene() const { return scene_; }
+    Arena* arena() const { return arena_; }
     const std::vector<PreparedNode>& nodes() const { return nodes_; }  // in submission order
     // Without exact duplicates of opaque ones.
     const std::vector<Placement>& placements() const { return placements_; }
-    // Per material of the scene, and one past them for the default: whether anything that may be drawn has it.
+    // Per material, as Placement counts them: whether anything that may be drawn has it.
     std::vector<bool> used_materials() const;
 
     // choose_camera() for this scene at its moment. The latest answer is remembered.

@@ -73,6 +73,7 @@ FrameCamera host_camera(const Mat4& clip_from_world, const Mat4& camera_from_wor
         refuse(
             "clip_from_world does not fit camera_from_world: w must be a distance along -Z of the camera, or constant");
     p /= w;
+    f.clip_scale = w;
     f.camera_to_clip = p;
     store_projection(p, width, height, f.projection);
     // z' = w at the near plane, where z' is a z + b.

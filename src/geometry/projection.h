@@ -10,6 +10,7 @@ namespace tessera {
 struct FrameCamera {
     glm::dmat4 world_to_camera{1.0}, camera_to_clip{1.0};
     std::optional<glm::dmat4> world_to_clip;  // a host's own, which is used as it is
+    double clip_scale = 1;                    // its w over that of camera_to_clip
     ProjectionView projection{};
 
     glm::dmat4 node_to_clip(const glm::dmat4& node_to_world, const glm::dmat4& node_to_camera) const {

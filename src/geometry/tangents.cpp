@@ -272,7 +272,7 @@ std::vector<Vec4> corner_tangents(std::span<const Vec3> positions, std::span<con
 }
 
 Primitive with_tangents(const Primitive& primitive, int uv_set) {
-    if (!is_drawn(primitive.mode) || primitive.normals.empty()) return primitive;
+    if (!has_triangles(primitive.mode) || primitive.normals.empty()) return primitive;
     const TriangleList triangles(primitive);
     if (triangles.empty()) return primitive;
     const auto set = static_cast<std::size_t>(uv_set);

@@ -54,6 +54,25 @@ std::size_t triangle_count(const Primitive& primitive) {
     return 0;
 }
 
+std::size_t element_count(const Primitive& primitive) {
+    const std::size_t n = vertex_references(primitive);
+    switch (primitive.mode) {
+        case PrimitiveMode::kPoints:
+            return n;
+        case PrimitiveMode::kLines:
+            return n / 2;
+        case PrimitiveMode::kLineLoop:
+            return n < 2 ? 0 : n;
+        case PrimitiveMode::kLineStrip:
+            return n < 2 ? 0 : n - 1;
+        case PrimitiveMode::kTriangles:
+        case PrimitiveMode::kTriangleStrip:
+        case PrimitiveMode::kTriangleFan:
+            break;
+    }
+    return triangle_count(primitive);
+}
+
 std::size_t used_index_count(const Primitive& primitive) {
     const std::size_t n = vertex_references(primitive);
     switch (primitive.mode) {

@@ -14,14 +14,17 @@
 
 namespace tessera {
 
-// Whether the engines draw this mode: triangle lists, strips and fans.
-constexpr bool is_drawn(PrimitiveMode mode) {
+// Triangle lists, strips and fans; the other modes are drawn as strokes (strokes.h).
+constexpr bool has_triangles(PrimitiveMode mode) {
     return mode == PrimitiveMode::kTriangles || mode == PrimitiveMode::kTriangleStrip ||
            mode == PrimitiveMode::kTriangleFan;
 }
 
 // Number of triangles, without building them.
 std::size_t triangle_count(const Primitive& primitive);
+
+// Number of complete points, lines or triangles.
+std::size_t element_count(const Primitive& primitive);
 
 // How many entries of the index list (or vertices, where there are no indices) belong to complete
 // points, lines or triangles: the rest is never drawn.

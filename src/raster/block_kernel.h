@@ -14,10 +14,10 @@ struct TileEdge {
     std::int32_t e, a, b;  // at the tile's first sample; per pixel to the right and down
 
     // False where the tile lies outside. An edge that the tile lies inside of becomes zero.
-    TESSERA_INLINE bool set(SnappedVertex from, SnappedVertex to, std::int64_t x, std::int64_t y, int side) {
+    TESSERA_INLINE bool set(SnappedVertex from, SnappedVertex to, std::uint8_t ties, std::int64_t x, std::int64_t y,
+                            int side) {
         const std::int64_t dx = static_cast<std::int64_t>(to.x) - from.x, dy = static_cast<std::int64_t>(to.y) - from.y;
-        const bool top_left = dy < 0 || (dy == 0 && dx > 0);
-        const std::int64_t start = (dx * (y - from.y) - dy * (x - from.x) - (top_left ? 0 : 1)) >> 8;
+        const std::int64_t start = (dx * (y - from.y) - dy * (x - from.x) - (owns_edge(dx, dy, ties) ? 0 : 1)) >> 8;
         const std::int64_t reach = side - 1;
         const std::int64_t most = start + reach * ((dy < 0 ? -dy : 0) + (dx > 0 ? dx : 0));
         const std::int64_t least = start + reach * ((dy > 0 ? -dy : 0) + (dx < 0 ? dx : 0));

@@ -17,7 +17,7 @@ void FrameVertices::place(const Frame& frame, const std::vector<std::uint32_t>& 
     std::uint32_t filled = 0;
     std::size_t size = 0, scattered_corners = 0;
     for (const std::uint32_t i : in_view) {
-        const PreparedMesh& mesh = *frame.prepared[i];
+        const DrawnMesh& mesh = *frame.prepared[i];
         const std::size_t corners = 3 * std::size_t{mesh.view.triangle_count};
         const std::uint32_t span = mesh.highest_vertex - mesh.lowest_vertex + 1;
         const bool scattered = span > corners;
@@ -46,7 +46,7 @@ void FrameVertices::place(const Frame& frame, const std::vector<std::uint32_t>& 
     const TransformedVertex* const all = vertices_.data();
     for (const Part& part : parts_) {
         if (part.first > 0) continue;
-        const PreparedMesh& mesh = *frame.prepared[part.instance];
+        const DrawnMesh& mesh = *frame.prepared[part.instance];
         // So that corners count from the first vertex of the mesh.
         by_instance_[part.instance] =
             part.scattered ? InstanceVertices{all + part.place, numbers_.data()}

@@ -137,11 +137,14 @@ template <bool kCount>
 TESSERA_INLINE void fill_large(VisibilityJob& job, const PixelPlaces& places, const LargeTriangle& t,
                                std::uint32_t ordinal) {
     const TriangleBox box(t.v);
-    const AlphaMode mode = job.source->shading->materials[job.source->instances[t.instance].material].alpha_mode;
-    if (mode == AlphaMode::kOpaque && box.fits(kMediumSide)) return fill_medium<kCount>(job, places, t, box, ordinal);
+    const InstanceView& instance = job.source->instances[t.instance];
+    const AlphaMode mode = job.source->shading->materials[instance.material].alpha_mode;
+    const std::uint8_t ties = instance.mesh.tie_rule(t.triangle);
+    if (mode == AlphaMode::kOpaque && box.fits(kMediumSide))
+        return fill_medium<kCount>(job, places, t, box, ties, ordinal);
     LargeFill f(t, ordinal, 256 * job.x0 + job.offset.x, 256 * job.y0 + job.offset.y);
     for (int k = 0; k < 3; ++k)
-        if (!f.edges[k].set(t.v[k], t.v[k == 2 ? 0 : k + 1], f.x0, f.y0, job.side)) return;
+        if (!f.edges[k].set(t.v[k], t.v[k == 2 ? 0 : k + 1], ties, f.x0, f.y0, job.side)) return;
     switch (mode) {
         case AlphaMode::kOpaque:
             return fill_blocks<FillKind::kOpaque, kCount>(job, f, box, nullptr, nullptr);

@@ -45,7 +45,7 @@ inline constexpr std::int32_t kMediumSide = 16 * 256;
 
 template <bool kCount>
 TESSERA_INLINE void fill_medium(VisibilityJob& job, const PixelPlaces& places, const LargeTriangle& t,
-                                const TriangleBox& box, std::uint32_t ordinal) {
+                                const TriangleBox& box, std::uint8_t ties, std::uint32_t ordinal) {
     const std::int32_t x0 = 256 * job.x0 + job.offset.x, y0 = 256 * job.y0 + job.offset.y;
     // The samples of the box, in the tile.
     const std::int32_t left = max((box.left - x0 + 255) >> 8, 0), top = max((box.top - y0 + 255) >> 8, 0);
@@ -58,7 +58,7 @@ TESSERA_INLINE void fill_medium(VisibilityJob& job, const PixelPlaces& places, c
     for (int k = 0; k < 3; ++k) {
         const SnappedVertex from = t.v[k], to = t.v[k == 2 ? 0 : k + 1];
         const std::int32_t dx = to.x - from.x, dy = to.y - from.y;
-        const std::int32_t rule = dy < 0 || (dy == 0 && dx > 0) ? 0 : 1;
+        const std::int32_t rule = owns_edge(dx, dy, ties) ? 0 : 1;
         const std::int32_t e = (dx * (y0 + 256 * top - from.y) - dy * (x0 + 256 * left - from.x) - rule) >> 8;
         start[k] = Int(e - dy * (first_x - left) + dx * (first_y - top)) + (Int(dx) * lane_y - Int(dy) * lane_x);
         right_step[k] = Int(-dy * kPixelColumns);

@@ -63,11 +63,32 @@ struct SampleBox {
 struct LaneEdge {
     Int a, b, e;
 
-    TESSERA_INLINE LaneEdge(Int ax, Int ay, Int bx, Int by, Int x, Int y) {
+    template <class Ties>
+    TESSERA_INLINE LaneEdge(Int ax, Int ay, Int bx, Int by, Int x, Int y, const Ties& ties) {
         a = ay - by;
         b = bx - ax;
-        const Mask top_left = (a > Int(0)) | ((a == Int(0)) & (b > Int(0)));
-        e = (a * (x - ax) + b * (y - ay) + select(top_left, Int(0), Int(-1))) >> 8;
+        e = (a * (x - ax) + b * (y - ay) + select(ties.own(a, b), Int(0), Int(-1))) >> 8;
+    }
+};
+
+// Whose the samples on an edge with the gradient (a, b) are, as owns_edge() says: of meshes and points, and of lines.
+struct TopLeft {
+    TESSERA_INLINE Mask own(Int a, Int b) const { return (a > Int(0)) | ((a == Int(0)) & (b > Int(0))); }
+};
+struct LaneTies {
+    Int rules;
+
+    // Of the lines of kLanes triangles, of which `count` are there.
+    TESSERA_INLINE LaneTies(const MeshView& mesh, std::uint32_t first, std::uint32_t count) {
+        alignas(64) std::int32_t lanes[kLanes<Int>] = {};
+        for (std::uint32_t i = 0; i < count; ++i) lanes[i] = mesh.ties[(first + i) >> 1];
+        rules = load<Int>(lanes);
+    }
+    TESSERA_INLINE Mask has(int bit) const { return (rules & Int(bit)) != Int(0); }
+    TESSERA_INLINE Mask own(Int a, Int b) const {
+        const Int right = select(has(kTieLeft), Int(0) - a, a), down = select(has(kTieUp), Int(0) - b, b);
+        const Mask down_first = has(kTieDownFirst);
+        return TopLeft{}.own(select(down_first, down, right), select(down_first, right, down));
     }
 };
 
@@ -90,14 +111,24 @@ TESSERA_INLINE Uint cover_rows(LaneEdge (&edges)[3]) {
 
 // Coverage of 8x8 samples from (x, y) on by triangles that run clockwise on the screen, a bit each.
 // `wide` and `high`: whether any of the triangles reaches beyond four columns or rows.
+template <class Ties>
 TESSERA_INLINE void cover_small(const Int (&x)[3], const Int (&y)[3], Int first_x, Int first_y, bool wide, bool high,
-                                Uint (&rows)[2]) {
-    LaneEdge edges[3] = {{x[0], y[0], x[1], y[1], first_x, first_y},
-                         {x[1], y[1], x[2], y[2], first_x, first_y},
-                         {x[2], y[2], x[0], y[0], first_x, first_y}};
+                                const Ties& ties, Uint (&rows)[2]) {
+    LaneEdge edges[3] = {{x[0], y[0], x[1], y[1], first_x, first_y, ties},
+                         {x[1], y[1], x[2], y[2], first_x, first_y, ties},
+                         {x[2], y[2], x[0], y[0], first_x, first_y, ties}};
     rows[0] = wide ? cover_rows<8>(edges) : cover_rows<4>(edges);
     rows[1] = Uint(0u);
     if (high) rows[1] = wide ? cover_rows<8>(edges) : cover_rows<4>(edges);
+}
+
+// The same for triangles of lines, from `first` of the job on.
+__attribute__((noinline)) inline void cover_lines(const SetupJob& job, std::uint32_t first, const Int (&x)[3],
+                                                  const Int (&y)[3], Int first_x, Int first_y, bool wide, bool high,
+                                                  Uint (&rows)[2]) {
+    const std::uint32_t left = job.count - first, width = kLanes<Int>;
+    const LaneTies ties(job.instance->mesh, job.first + first, left < width ? left : width);
+    cover_small(x, y, first_x, first_y, wide, high, ties, rows);
 }
 
 // Adds `count` small triangles from `first` on to a tile: to its last run, where they follow on it.
@@ -204,8 +235,11 @@ inline void setup(SetupJob& job) {
             const Int lines = ((high_y - Int(job.sample.y)) >> 8) - box.top;
             if (const std::uint32_t fits = kept & mask_bits(max(columns, lines) < Int(kBlockSide))) {
                 const bool wide = fits & mask_bits(columns > Int(3)), high = fits & mask_bits(lines > Int(3));
-                cover_small(x, y, (box.left << 8) + Int(job.sample.x), (box.top << 8) + Int(job.sample.y), wide, high,
-                            rows);
+                const Int first_x = (box.left << 8) + Int(job.sample.x), first_y = (box.top << 8) + Int(job.sample.y);
+                if (job.instance->mesh.ties)
+                    cover_lines(job, t, x, y, first_x, first_y, wide, high, rows);
+                else
+                    cover_small(x, y, first_x, first_y, wide, high, TopLeft{}, rows);
                 small = fits & mask_bits((rows[0] | rows[1]) != Uint(0u));
                 const std::uint32_t nothing = fits & ~small;
                 count_lanes(job.counters.no_sample, nothing);

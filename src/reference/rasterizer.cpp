@@ -1,6 +1,7 @@
 #include "reference/rasterizer.h"
 
 #include <algorithm>
+#include <array>
 #include <utility>
 
 namespace tessera {
@@ -9,19 +10,18 @@ namespace {
 // An edge of a triangle as a function of the position: E(x, y) = a x + b y + c, positive on the inner
 // side, in units of 1/65536 square pixels. A sample on the edge belongs to the triangle when the edge
 // is a left or a top one (with y down: going up, or level and going right), so that two triangles
-// that share the edge never both own the sample and never both miss it.
+// that share the edge never both own the sample and never both miss it. The two of a line may turn the rule.
 struct Edge {
     std::int64_t a, b, c;
 
     // The triangle lies where E > 0 when its vertices run clockwise on the screen (y down), which is
     // the order that fill() brings them into.
-    Edge(SnappedVertex from, SnappedVertex to) {
+    Edge(SnappedVertex from, SnappedVertex to, std::uint8_t ties) {
         const std::int64_t dx = static_cast<std::int64_t>(to.x) - from.x, dy = static_cast<std::int64_t>(to.y) - from.y;
         a = -dy;
         b = dx;
         c = -(a * from.x + b * from.y);
-        const bool top_left = dy < 0 || (dy == 0 && dx > 0);
-        if (!top_left) c -= 1;  // E > 0 as E - 1 >= 0: everything is an integer
+        if (!owns_edge(dx, dy, ties)) c -= 1;  // E > 0 as E - 1 >= 0: everything is an integer
     }
     bool inside(std::int64_t x, std::int64_t y) const { return a * x + b * y + c >= 0; }
 };
@@ -90,16 +90,18 @@ class Rasterizer {
         for (int i = 1; i + 1 < t.vertex_count; ++i) {
             const std::int64_t area = twice_area(t.polygon[0], t.polygon[i], t.polygon[i + 1]);
             if (area == 0 || (area < 0) != (t.orientation > 0)) continue;
+            const std::uint8_t ties = instance.mesh.tie_rule(triangle - instance.first_triangle);
             if (area < 0)
-                fill(t.polygon[0], t.polygon[i + 1], t.polygon[i], triangle, material.alpha_mode);
+                fill({t.polygon[0], t.polygon[i + 1], t.polygon[i]}, ties, triangle, material.alpha_mode);
             else
-                fill(t.polygon[0], t.polygon[i], t.polygon[i + 1], triangle, material.alpha_mode);
+                fill({t.polygon[0], t.polygon[i], t.polygon[i + 1]}, ties, triangle, material.alpha_mode);
         }
     }
 
     // Visits every sample of a triangle whose vertices run clockwise on the screen.
-    void fill(SnappedVertex v0, SnappedVertex v1, SnappedVertex v2, std::uint32_t triangle, AlphaMode mode) {
-        const Edge e0(v1, v2), e1(v2, v0), e2(v0, v1);
+    void fill(const std::array<SnappedVertex, 3>& v, std::uint8_t ties, std::uint32_t triangle, AlphaMode mode) {
+        const auto& [v0, v1, v2] = v;
+        const Edge e0(v1, v2, ties), e1(v2, v0, ties), e2(v0, v1, ties);
         const int x_begin = std::max(first_sample(std::min({v0.x, v1.x, v2.x}), offset_.x), 0);
         const int y_begin = std::max(first_sample(std::min({v0.y, v1.y, v2.y}), offset_.y), 0);
         const int x_end = std::min(last_sample(std::max({v0.x, v1.x, v2.x}), offset_.x), out_.width);

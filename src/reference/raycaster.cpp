@@ -75,7 +75,8 @@ float ShadowCaster::visible(const SurfacePoint<float>& point, std::uint32_t tria
     const CastRay ray{{start.x, start.y, start.z}, {l.x, l.y, l.z}};
     bool blocked = false;
     bvh_.traverse(ray, 0.0, static_cast<double>(light.distance) * (1 - 1e-5), [&](const RayHit& hit, double t_max) {
-        if (hit.triangle == triangle) return t_max;
+        // Points and lines face the camera, not the light, and cast no shadows.
+        if (hit.triangle == triangle || sampler_.instance(hit.triangle).mesh.is_stroke()) return t_max;
         const MaterialView& material = sampler_.material(hit.triangle);
         if (material.alpha_mode == AlphaMode::kBlend) return t_max;
         if (material.alpha_mode == AlphaMode::kMask && sampler_.alpha(hit.triangle, hit.b) < material.alpha_cutoff)

@@ -121,13 +121,24 @@ AmbientView uniform_ambient(Vec3 radiance) {
 }
 
 double metered_exposure(const Frame& frame, const ShadingContext& context) {
-    if (frame.triangle_count == 0) return 1.0;
-    const std::uint32_t step = (frame.triangle_count + kMeterPoints - 1) / kMeterPoints;
-    const int per_triangle = static_cast<int>(std::clamp(kMeterPoints / frame.triangle_count, 1u, 64u));
+    // Points and lines say little of the light, and count only where there is nothing else.
+    std::uint32_t count = 0;
+    for (const InstanceView& i : frame.instances) count += i.mesh.is_stroke() ? 0 : i.mesh.triangle_count;
+    const bool strokes = count == 0;
+    if (strokes) count = frame.triangle_count;
+    if (count == 0) return 1.0;
+    const std::uint32_t step = (count + kMeterPoints - 1) / kMeterPoints;
+    const int per_triangle = static_cast<int>(std::clamp(kMeterPoints / count, 1u, 64u));
     std::vector<MeterPoint> points;
     TriangleSetup setup;
-    for (std::uint32_t t = step / 2; t < frame.triangle_count; t += step)
-        meter_triangle(frame, context, t, per_triangle, setup, points);
+    std::uint64_t next = step / 2, passed_by = 0;
+    for (const InstanceView& i : frame.instances) {
+        if (i.mesh.is_stroke() && !strokes) continue;
+        for (; next < passed_by + i.mesh.triangle_count; next += step)
+            meter_triangle(frame, context, i.first_triangle + static_cast<std::uint32_t>(next - passed_by),
+                           per_triangle, setup, points);
+        passed_by += i.mesh.triangle_count;
+    }
     if (points.empty()) return 1.0;
     std::stable_sort(points.begin(), points.end(),
                      [](const MeterPoint& a, const MeterPoint& b) { return a.value < b.value; });

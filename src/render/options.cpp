@@ -33,6 +33,10 @@ std::uint64_t picture_bytes(const RenderOptions& o) {
                      (o.show == Stage::kPicture ? 0 : 4) + labels);
 }
 
+void check_stroke(const char* what, float pixels) {
+    if (!(pixels >= kLeastStroke && pixels <= kMostStroke)) refuse(std::string(what) + " must be 0.1 to 256 pixels");
+}
+
 void check_stage(const RenderOptions& o) {
     if (o.show > Stage::kCost) refuse("unknown stage");
     if (o.show == Stage::kPicture) return;
@@ -65,6 +69,8 @@ void check_options(const RenderOptions& o) {
     const int side = o.raster.tile_side;
     if (side != 0 && side != 32 && side != 64 && side != 128) refuse("tile sides are 32, 64 or 128 pixels");
     if (o.samples < 1 || o.samples > 256) refuse("samples must be 1 to 256");
+    check_stroke("point size", o.point_size);
+    check_stroke("line width", o.line_width);
     if (o.exposure_ev && !(std::fabs(*o.exposure_ev) <= 64.0f)) refuse("exposure must be within 64 EV");
     if (o.ambient && !(*o.ambient >= 0.0f && *o.ambient < 1e9f)) refuse("ambient radiance must not be negative");
     if (o.threads < 0) refuse("threads must not be negative");
@@ -96,6 +102,10 @@ FilmView film_view(const RenderOptions& options, double exposure) {
         film.background[3] = b.w;
     }
     return film;
+}
+
+StrokeStyle stroke_style(const RenderOptions& options) {
+    return {options.point_size, options.line_width, options.max_bytes - picture_bytes(options)};
 }
 
 std::vector<SamplePosition> sample_positions(const RenderOptions& options) {

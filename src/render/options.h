@@ -3,6 +3,7 @@
 
 #include <tessera/render.h>
 
+#include "geometry/strokes.h"
 #include "raster/engine.h"
 #include "reference/visibility.h"
 #include "shading/film.h"
@@ -16,6 +17,9 @@ namespace tessera {
 void check_options(const RenderOptions& options);
 
 FilmView film_view(const RenderOptions& options, double exposure);
+
+// How points and lines are drawn, in the memory that the picture leaves.
+StrokeStyle stroke_style(const RenderOptions& options);
 
 // Where a pixel's samples lie.
 std::vector<SamplePosition> sample_positions(const RenderOptions& options);

@@ -68,7 +68,7 @@ void Renderer::Impl::draw(const Shot& now, const Shot& earlier, const Shot& late
 
     prepared.move_to(now.moment);
     frame.keep_nodes = options.want_motion;
-    make_frame(prepared, now.view, options.width, options.height, frame);
+    make_frame(prepared, now.view, options.width, options.height, stroke_style(options), frame);
     shading.light(scene, frame, options);
     watch.phase("evaluate");
 
@@ -88,6 +88,8 @@ void Renderer::Impl::draw(const Shot& now, const Shot& earlier, const Shot& late
     result.warnings.insert(result.warnings.end(), warnings.begin(), warnings.end());
     result.stats.engine = options.engine;
     result.stats.exposure = shading.exposure();
+    result.stats.points = frame.points;
+    result.stats.lines = frame.lines;
     watch.finish();
 }
 

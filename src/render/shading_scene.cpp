@@ -52,16 +52,31 @@ MaterialView convert(const Material& m) {
     return v;
 }
 
+// What nothing gives a colour: to be seen on white and on black.
+constexpr float kInk = 0.2f;
+
+// The material where no light counts: its colour.
+MaterialView without_lighting(const MaterialView& lit) {
+    MaterialView v = lit;
+    v.model = ShadingModel::kUnlit;
+    if (family_of(lit.model) == ShadingFamily::kTextbook)
+        for (int i = 0; i < 3; ++i) v.base_color[i] = lit.diffuse[i];
+    return v;
+}
+
 std::vector<bool> materials_of(const Scene& scene, const Frame& frame) {
-    std::vector<bool> used(scene.materials.size() + 1, false);
+    std::vector<bool> used(ink_material(scene) + 1, false);
     for (const InstanceView& i : frame.instances) used[i.material] = true;
     return used;
 }
 
 }  // namespace
 
-ShadingScene::ShadingScene(const Scene& scene, const std::vector<bool>& used, Arena& arena,
+ShadingScene::ShadingScene(const Scene& scene, const std::vector<bool>& used_views, Arena& arena,
                            std::vector<std::string>& warnings) {
+    const std::size_t lit = lit_materials(scene);
+    std::vector<bool> used(lit);
+    for (std::size_t m = 0; m < lit; ++m) used[m] = used_views[m] || used_views[m + lit];
     for (const Material& m : scene.materials) materials_.push_back(convert(m));
     materials_.push_back(convert(Material{}));  // of primitives without one
 
@@ -112,6 +127,10 @@ ShadingScene::ShadingScene(const Scene& scene, const std::vector<bool>& used, Ar
             constexpr float kIdentity[6] = {1, 0, 0, 0, 1, 0};
             input.plain = std::equal(input.transform, input.transform + 6, kIdentity);
         }
+    for (std::size_t m = 0; m < lit; ++m) materials_.push_back(without_lighting(materials_[m]));
+    MaterialView ink = materials_.back();
+    for (int i = 0; i < 3; ++i) ink.base_color[i] = kInk;
+    materials_.push_back(ink);
 }
 
 ShadingScene::ShadingScene(const Scene& scene, const Frame& frame, const RenderOptions& options, Arena& arena,

@@ -8,11 +8,6 @@
 namespace tessera {
 namespace {
 
-bool usable(const ClipVertex<float>& v) {
-    return std::fabs(v.x) < kLargestCoordinate && std::fabs(v.y) < kLargestCoordinate &&
-           std::fabs(v.z) < kLargestCoordinate && std::fabs(v.w) < kLargestCoordinate;
-}
-
 SnappedVertex snap_point(const HomogeneousPoint& p, const ProjectionView& projection) {
     const double half_w = 0.5 * static_cast<double>(projection.width),
                  half_h = 0.5 * static_cast<double>(projection.height);
@@ -167,7 +162,7 @@ Corner<float> fetch_corner(const MeshView& mesh, std::uint32_t vertex) {
     const std::size_t v = vertex;
     Corner<float> c{};
     c.position = Vec3T<float>::load(mesh.positions + 3 * v);
-    c.normal = Vec3T<float>::load(mesh.normals + 3 * v);
+    if (mesh.normals) c.normal = Vec3T<float>::load(mesh.normals + 3 * v);
     if (mesh.tangents) {
         const float* t = mesh.tangents + 4 * v;
         c.tangent = {t[0], t[1], t[2], t[3]};

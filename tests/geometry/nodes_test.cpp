@@ -112,7 +112,7 @@ Scene with_meshes(Scene scene, std::uint32_t seed) {
     for (int m = 0; m < 5; ++m) {
         Primitive p;
         for (int i = 0; i < 12; ++i) p.positions.push_back(random.vec3(1));
-        p.positions.push_back({1000, 1000, 1000});                           // no triangle uses it
+        p.positions.push_back({1000, 1000, 1000});                           // nothing uses it
         for (int i = 0; i < 20; ++i) p.indices.push_back(random.below(12));  // 18 of them make triangles
         Primitive lines = p;
         lines.mode = PrimitiveMode::kLines;
@@ -131,11 +131,10 @@ TEST(Geometry, GEO5_BoundsAreThoseOfTheDrawnVertices) {
         for (const int n : nodes.order) {
             const int mesh = scene.nodes[static_cast<std::size_t>(n)].mesh;
             if (mesh == kNone) continue;
-            const Primitive& p = scene.meshes[static_cast<std::size_t>(mesh)].primitives[0];
-            for (std::size_t i = 0; i < 18; ++i) {
-                const glm::dmat4& m = nodes.world[static_cast<std::size_t>(n)];
-                expected.add(to_vec3(transform_point(m, to_dvec3(p.positions[p.indices[i]]))));
-            }
+            const glm::dmat4& m = nodes.world[static_cast<std::size_t>(n)];
+            for (const Primitive& p : scene.meshes[static_cast<std::size_t>(mesh)].primitives)
+                for (std::size_t i = 0; i < (p.mode == PrimitiveMode::kLines ? 20 : 18); ++i)
+                    expected.add(to_vec3(transform_point(m, to_dvec3(p.positions[p.indices[i]]))));
         }
         const Bounds3 bounds = visible_bounds(scene);
         EXPECT_EQ(bounds.min, expected.min);

@@ -45,11 +45,11 @@ TEST(Geometry, GEO_TriangleModes) {
 TEST(Geometry, GEO_TrianglesOfNothing) {
     using M = PrimitiveMode;
     for (const M mode : {M::kPoints, M::kLines, M::kLineLoop, M::kLineStrip}) {
-        EXPECT_FALSE(is_drawn(mode));
+        EXPECT_FALSE(has_triangles(mode));
         EXPECT_TRUE(triples(primitive_of(mode, 10)).empty());
     }
     for (const M mode : {M::kTriangles, M::kTriangleStrip, M::kTriangleFan}) {
-        EXPECT_TRUE(is_drawn(mode));
+        EXPECT_TRUE(has_triangles(mode));
         for (std::size_t n = 0; n < 3; ++n) EXPECT_TRUE(triples(primitive_of(mode, n)).empty());
         EXPECT_TRUE(triples(primitive_of(mode, 10, {1, 2})).empty());
     }

@@ -59,8 +59,8 @@ Agreement compare(const Prepared& p, const Visibility& raster, const Visibility&
     return a;
 }
 
-Agreement agree(Scene scene, const View& view, int width, int height) {
-    const Prepared p(std::move(scene), view, width, height);
+Agreement agree(Scene scene, const View& view, int width, int height, const StrokeStyle& style = {}) {
+    const Prepared p(std::move(scene), view, width, height, style);
     const SamplePosition centre{128, 128};
     const Bvh bvh(p.frame);
     return compare(p, rasterize(p.frame, p.context(), centre, test::no_control()),
@@ -116,6 +116,26 @@ TEST(Agreement, RAS2_RasterAndRaysAgreeOnClippedTriangles) {
             const Agreement a = agree(test::make_scene(floor), view, 320, 200);
             EXPECT_EQ(a.unexplained, 0u) << a.first_unexplained;
             EXPECT_LE(a.near_edge, 40u);
+        }
+}
+
+// Wire frames and vertices of a mesh, over its own faces.
+TEST(Agreement, RAS3_RasterAndRaysAgreeOnPointsAndLines) {
+    for (const bool inside : {false, true})
+        for (const float size : {1.0f, 6.0f}) {
+            Scene scene = test::make_scene(wl::sphere(24));
+            Primitive dots = scene.meshes[0].primitives[0], wires;
+            dots.mode = PrimitiveMode::kPoints;
+            wires = dots;
+            wires.normals.clear();
+            wires.mode = PrimitiveMode::kLineStrip;
+            scene.meshes[0].primitives.push_back(dots);
+            scene.meshes[0].primitives.push_back(wires);
+            const View view = inside ? test::look({0.2f, 0.1f, 0}, {1, 0, 0}) : test::look({0, 0, 2.2f}, {0, 0, 0});
+            const Agreement a = agree(std::move(scene), view, 320, 180, {size, size / 2});
+            EXPECT_EQ(a.unexplained, 0u) << a.first_unexplained;
+            // Lines on the pixel grid have many centres on their edges.
+            EXPECT_LE(a.near_edge + a.coincident, a.samples / 100);
         }
 }
 

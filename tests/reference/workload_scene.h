@@ -30,8 +30,8 @@ inline Scene make_scene(const wl::Mesh& mesh) {
 
 // A scene with everything that rendering it once needs.
 struct Prepared {
-    Prepared(Scene s, const View& view, int width, int height)
-        : scene(std::move(s)), frame(make_frame(scene, view, width, height)) {
+    Prepared(Scene s, const View& view, int width, int height, const StrokeStyle& style = {})
+        : scene(std::move(s)), frame(make_frame(scene, view, width, height, style)) {
         options.samples = 1;
         options.width = width;
         options.height = height;
