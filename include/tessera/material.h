@@ -69,10 +69,10 @@ struct Transmission {  // what enters the surface instead of the diffuse part
     TextureRef texture;  // red
     friend bool operator==(const Transmission&, const Transmission&) = default;
 };
-struct Volume {           // below the surface; thickness 0: there is none, the surface is thin
-    float thickness = 0;  // metres, in the space of the mesh
-    TextureRef thickness_texture;                // green
-    std::optional<float> attenuation_distance;   // metres in the world, after which light has the colour; none: infinite
+struct Volume {                                 // below the surface; thickness 0: there is none, the surface is thin
+    float thickness = 0;                        // metres, in the space of the mesh
+    TextureRef thickness_texture;               // green
+    std::optional<float> attenuation_distance;  // metres in the world, after which light has the colour; none: infinite
     Vec3 attenuation_color{1, 1, 1};
     friend bool operator==(const Volume&, const Volume&) = default;
 };
@@ -92,9 +92,9 @@ struct Material {
     std::string name;
     ShadingModel model = ShadingModel::kMetallicRoughness;
 
-    // Metallic-roughness and unlit. The alpha of base_color is the material's alpha in every model. Specular-glossiness:
-    // base_color is its diffuse colour, specular_color its reflectance, 1 - roughness its glossiness; metallic and ior
-    // do not count.
+    // Metallic-roughness and unlit. The alpha of base_color is the material's alpha in every model.
+    // Specular-glossiness: base_color is its diffuse colour, specular_color its reflectance, 1 - roughness its
+    // glossiness; metallic and ior do not count.
     Vec4 base_color{1, 1, 1, 1};
     float metallic = 1, roughness = 1;
     Vec3 emissive{0, 0, 0};  // ke of the Phong models

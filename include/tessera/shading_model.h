@@ -34,7 +34,8 @@ enum class TextureSlot : std::uint8_t {
     kOcclusion,
     kEmissive,
     kSpecular,       // alpha: the specular strength; the shininess of the Phong models
-    kSpecularColor,  // sRGB: the specular colour; ks of the Phong models. Alpha: the glossiness, where the model has one
+    kSpecularColor,  // sRGB: the specular colour; ks of the Phong models. Alpha: the glossiness, where the model has
+                     // one
     kCount
 };
 inline constexpr std::size_t kTextureSlots = static_cast<std::size_t>(TextureSlot::kCount);

@@ -91,7 +91,7 @@ class GltfDocument {
     };
     std::vector<Buffer> buffers_;
     std::size_t variant_count_ = 0;
-    std::vector<Bytes> unpacked_;  // views that were compressed
+    std::vector<Bytes> unpacked_;                 // views that were compressed
     std::vector<std::string> ignored_, undrawn_;  // extensions that were warned about
 };
 

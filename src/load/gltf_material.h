@@ -17,8 +17,8 @@ inline constexpr float kNoMaximum = std::numeric_limits<float>::max();
 
 // The member `key` of the object, a number or as many numbers as `out` has, clamped to least .. most with a
 // warning. Without the member `out` stays.
-void read_factor(GltfDocument& document, const Json& object, std::string_view key, std::span<float> out,
-                 float most = 1, float least = 0);
+void read_factor(GltfDocument& document, const Json& object, std::string_view key, std::span<float> out, float most = 1,
+                 float least = 0);
 inline void read_factor(GltfDocument& document, const Json& object, std::string_view key, float& out, float most = 1,
                         float least = 0) {
     read_factor(document, object, key, std::span(&out, 1), most, least);

@@ -26,8 +26,8 @@ struct MaterialView {
     float metallic, roughness, normal_scale, occlusion_strength;
     float dielectric[3] = {0.04f, 0.04f, 0.04f}, dielectric_edge = 1;  // reflectance of no metal, ahead and grazing
     float reflectance[3] = {0.04f, 0.04f, 0.04f};  // ahead, before the strength and the limit of 1: for textures
-    float emission[3];                                                 // strength included
-    float ambient[3], diffuse[3], specular[3];                         // ka, kd, ks
+    float emission[3];                             // strength included
+    float ambient[3], diffuse[3], specular[3];     // ka, kd, ks
     float shininess;
     TextureInput inputs[kTextureSlots];
 

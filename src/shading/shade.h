@@ -124,9 +124,8 @@ TESSERA_INLINE void shade_textbook(const ShadingContext& context, const Material
                     const SurfacePoint<F> point = batch.point(k);
                     mirrored = ks * read_input<kUvSets>(m, TextureSlot::kSpecularColor, point).xyz();
                     const F scale = read_input<kUvSets>(m, TextureSlot::kSpecular, point).w;
-                    power = m.input(TextureSlot::kSpecular).texture
-                                ? math::pow(max(base, zero), F(m.shininess) * scale)
-                                : power_cosine(base, exponent);
+                    power = m.input(TextureSlot::kSpecular).texture ? math::pow(max(base, zero), F(m.shininess) * scale)
+                                                                    : power_cosine(base, exponent);
                 } else {
                     power = power_cosine(base, exponent);
                 }
