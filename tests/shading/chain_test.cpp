@@ -167,8 +167,9 @@ class ChainTest : public testing::TestWithParam<Isa> {
     World world_;
 };
 
-constexpr ShadingModel kModels[] = {ShadingModel::kMetallicRoughness, ShadingModel::kUnlit, ShadingModel::kLambert,
-                                    ShadingModel::kPhong, ShadingModel::kBlinnPhong, ShadingModel::kSpecularGlossiness};
+constexpr ShadingModel kModels[] = {ShadingModel::kMetallicRoughness, ShadingModel::kUnlit,
+                                    ShadingModel::kLambert,           ShadingModel::kPhong,
+                                    ShadingModel::kBlinnPhong,        ShadingModel::kSpecularGlossiness};
 constexpr Wrap kWraps[] = {Wrap::kRepeat, Wrap::kMirror, Wrap::kClamp};
 constexpr MipFilter kMips[] = {MipFilter::kNone, MipFilter::kNearest, MipFilter::kLinear};
 

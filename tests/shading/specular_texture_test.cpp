@@ -46,7 +46,9 @@ SurfacePoint<float> random_point(test::Random& random) {
     return test::plain_point(random.unit() * random.in(0.5f, 20), random.unit());
 }
 
-void expect_near(const Vec3T<float>& got, Real3 want) { ASSERT_LT(test::distance(got, want), 5e-7L * (1 + norm(want))); }
+void expect_near(const Vec3T<float>& got, Real3 want) {
+    ASSERT_LT(test::distance(got, want), 5e-7L * (1 + norm(want)));
+}
 
 // dielectric_f0 = min(((n - 1) / (n + 1))^2 colour, 1) strength, dielectric_f90 = strength; metal keeps its own.
 TEST(LIT4_Specular, TexturesMultiplyStrengthAndColour) {
@@ -85,7 +87,8 @@ TEST(LIT4_SpecularGlossiness, IsItsDefinitionAtEveryTexel) {
         const Real left = 1 - std::fmax(specular.x, std::fmax(specular.y, specular.z));
         expect_near(p.f0, specular);
         expect_near(p.base, Real3{m.base_color[0], m.base_color[1], m.base_color[2]} * left);
-        ASSERT_NEAR(static_cast<double>(p.roughness), static_cast<double>(1 - (1 - Real{m.roughness}) * texel[3]), 1e-6);
+        ASSERT_NEAR(static_cast<double>(p.roughness), static_cast<double>(1 - (1 - Real{m.roughness}) * texel[3]),
+                    1e-6);
         ASSERT_EQ(p.f90, 1);
         ASSERT_EQ(p.metallic, 0);
     }
