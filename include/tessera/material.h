@@ -10,6 +10,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 
 namespace tessera {
@@ -49,11 +50,51 @@ struct TextureRef {
     friend bool operator==(const TextureRef&, const TextureRef&) = default;
 };
 
+// What glTF's extensions of these names describe, as data: a strength of 0 is none of it. A texture multiplies its
+// factor by the channel that is named. Engines use what they can; pictures that nothing draws with stay undecoded.
+
+struct Clearcoat {  // a clear lacquer on top
+    float strength = 0, roughness = 0, normal_scale = 1;
+    TextureRef strength_texture, roughness_texture, normal_texture;  // red, green, a normal map
+    friend bool operator==(const Clearcoat&, const Clearcoat&) = default;
+};
+struct Sheen {  // the fibres of cloth
+    Vec3 color{0, 0, 0};
+    float roughness = 0;
+    TextureRef color_texture, roughness_texture;  // sRGB, alpha
+    friend bool operator==(const Sheen&, const Sheen&) = default;
+};
+struct Transmission {  // what enters the surface instead of the diffuse part
+    float strength = 0;
+    TextureRef texture;  // red
+    friend bool operator==(const Transmission&, const Transmission&) = default;
+};
+struct Volume {                                 // below the surface; thickness 0: there is none, the surface is thin
+    float thickness = 0;                        // metres, in the space of the mesh
+    TextureRef thickness_texture;               // green
+    std::optional<float> attenuation_distance;  // metres in the world, after which light has the colour; none: infinite
+    Vec3 attenuation_color{1, 1, 1};
+    friend bool operator==(const Volume&, const Volume&) = default;
+};
+struct Anisotropy {  // highlights stretched along a direction, counter-clockwise from the tangent in radians
+    float strength = 0, rotation = 0;
+    TextureRef texture;  // direction in red and green, strength in blue
+    friend bool operator==(const Anisotropy&, const Anisotropy&) = default;
+};
+struct Iridescence {  // a thin film
+    float strength = 0, ior = 1.3f;
+    float thickness_at_black = 100, thickness_at_white = 400;  // nanometres, by the texture; without one: the latter
+    TextureRef texture, thickness_texture;                     // red, green
+    friend bool operator==(const Iridescence&, const Iridescence&) = default;
+};
+
 struct Material {
     std::string name;
     ShadingModel model = ShadingModel::kMetallicRoughness;
 
     // Metallic-roughness and unlit. The alpha of base_color is the material's alpha in every model.
+    // Specular-glossiness: base_color is its diffuse colour, specular_color its reflectance, 1 - roughness its
+    // glossiness; metallic and ior do not count.
     Vec4 base_color{1, 1, 1, 1};
     float metallic = 1, roughness = 1;
     Vec3 emissive{0, 0, 0};  // ke of the Phong models
@@ -71,6 +112,14 @@ struct Material {
     std::array<TextureRef, kTextureSlots> textures;
     TextureRef& texture(TextureSlot s) { return textures[static_cast<std::size_t>(s)]; }
     const TextureRef& texture(TextureSlot s) const { return textures[static_cast<std::size_t>(s)]; }
+
+    Clearcoat clearcoat;
+    Sheen sheen;
+    Transmission transmission;
+    Volume volume;
+    Anisotropy anisotropy;
+    Iridescence iridescence;
+    float dispersion = 0;  // 20 over the Abbe number; 0: none
 
     AlphaMode alpha_mode = AlphaMode::kOpaque;
     float alpha_cutoff = 0.5f;

@@ -7,7 +7,14 @@
 
 namespace tessera {
 
-enum class ShadingModel : std::uint8_t { kMetallicRoughness, kUnlit, kLambert, kPhong, kBlinnPhong };
+enum class ShadingModel : std::uint8_t {
+    kMetallicRoughness,
+    kUnlit,
+    kLambert,
+    kPhong,
+    kBlinnPhong,
+    kSpecularGlossiness
+};
 enum class AlphaMode : std::uint8_t { kOpaque, kMask, kBlend };
 
 enum class LightType : std::uint8_t { kDirectional, kPoint, kSpot };
@@ -20,7 +27,17 @@ enum class SpotProfile : std::uint8_t { kCones, kAxis };
 
 // A texture input of the material interface. To add one: a slot here, its reader in load/, its use
 // in shading/material.h. Every engine then sees it.
-enum class TextureSlot : std::uint8_t { kBaseColor, kMetallicRoughness, kNormal, kOcclusion, kEmissive, kCount };
+enum class TextureSlot : std::uint8_t {
+    kBaseColor,
+    kMetallicRoughness,
+    kNormal,
+    kOcclusion,
+    kEmissive,
+    kSpecular,       // alpha: the specular strength; the shininess of the Phong models
+    kSpecularColor,  // sRGB: the specular colour; ks of the Phong models. Alpha: the glossiness, where the model has
+                     // one
+    kCount
+};
 inline constexpr std::size_t kTextureSlots = static_cast<std::size_t>(TextureSlot::kCount);
 
 enum class Wrap : std::uint8_t { kRepeat, kMirror, kClamp };

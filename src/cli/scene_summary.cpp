@@ -1,12 +1,12 @@
 #include "cli/scene_summary.h"
 
 #include "cli/json_writer.h"
+#include "cli/material_summary.h"
 #include "cli/report.h"
 
 #include <tessera/render.h>
 
 #include <algorithm>
-#include <cstdio>
 #include <string_view>
 #include <vector>
 
@@ -42,44 +42,10 @@ const char* type_name(const Light& light) {
     return "";
 }
 
-const char* model_name(const Material& material) {
-    switch (material.model) {
-        case ShadingModel::kMetallicRoughness:
-            return "metallic-roughness";
-        case ShadingModel::kUnlit:
-            return "unlit";
-        case ShadingModel::kLambert:
-            return "lambert";
-        case ShadingModel::kPhong:
-            return "phong";
-        case ShadingModel::kBlinnPhong:
-            return "blinn-phong";
-    }
-    return "";
-}
-
-const char* alpha_name(const Material& material) {
-    switch (material.alpha_mode) {
-        case AlphaMode::kOpaque:
-            return "opaque";
-        case AlphaMode::kMask:
-            return "mask";
-        case AlphaMode::kBlend:
-            return "blend";
-    }
-    return "";
-}
-
 int width(const Picture& picture) { return picture.pixels ? picture.pixels->width() : 0; }
 int height(const Picture& picture) { return picture.pixels ? picture.pixels->height() : 0; }
 
 // --- text -----------------------------------------------------------------------------------
-
-std::string number(double value) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%.6g", value);
-    return text;
-}
 
 std::string vector_text(Vec3 v) { return number(v.x) + ", " + number(v.y) + ", " + number(v.z); }
 
@@ -114,8 +80,6 @@ std::string names(std::string_view label, const std::vector<std::string>& items)
 }
 
 // --- JSON -----------------------------------------------------------------------------------
-
-void write(JsonWriter& json, Vec3 v) { json.begin_array().value(v.x).value(v.y).value(v.z).end_array(); }
 
 void write(JsonWriter& json, std::string_view key, const std::vector<std::string>& items) {
     json.key(key).begin_array();
@@ -182,8 +146,7 @@ std::string summary_text(const std::string& file, const Scene& scene, const Scen
         line("nodes", std::to_string(scene.nodes.size()) + " in " + std::to_string(scene.scenes.size()) + " scenes");
     text +=
         line("meshes", std::to_string(scene.meshes.size()) + " with " + std::to_string(s.primitives) + " primitives");
-    text += list("materials", scene.materials,
-                 [](const Material& m) { return titled(m, std::string(model_name(m)) + ", " + alpha_name(m)); });
+    text += list("materials", scene.materials, [](const Material& m) { return titled(m, material_text(m)); });
     text += line("textures", std::to_string(scene.textures.size()));
     text += list("pictures", scene.pictures, [](const Picture& p) {
         const std::string size = std::to_string(width(p)) + "x" + std::to_string(height(p));
@@ -225,8 +188,7 @@ std::string summary_json(const std::string& file, const Scene& scene, const Scen
         json.end_object();
     }
     json.member("memory_bytes", s.memory_bytes);
-    write(json, "materials", scene.materials,
-          [&](const Material& m) { json.member("model", model_name(m)).member("alpha_mode", alpha_name(m)); });
+    write(json, "materials", scene.materials, [&](const Material& m) { write_material(json, m); });
     write(json, "pictures", scene.pictures, [&](const Picture& p) {
         const bool data = p.uri.compare(0, 5, "data:") == 0;
         json.member("uri", data ? std::string("data:") : p.uri).member("width", width(p)).member("height", height(p));

@@ -10,8 +10,7 @@ struct Shape {
     std::string_view name;
     std::size_t rows, columns;
 };
-// Elements of an accessor that is all zeros but for sparse ones: a few bytes of file may not ask for
-// gigabytes.
+// Elements of an accessor that is all zeros but for sparse ones.
 constexpr std::size_t kMostZeros = std::size_t{1} << 24;
 
 constexpr std::array<Shape, 7> kShapes = {
@@ -85,7 +84,13 @@ std::uint64_t accessor_count(const GltfDocument& document, std::size_t index) {
     return element_count(document.item(GltfArray::kAccessors, index));
 }
 
-Accessor open_accessor(GltfDocument& document, std::size_t index) {
+void check_zeros(const Accessor& a) {
+    if (!a.base.data && a.count > kMostZeros)
+        a.json.fail(std::to_string(a.count) + " elements without a buffer view: at most " + std::to_string(kMostZeros),
+                    ErrorCode::kLimit);
+}
+
+Accessor open_accessor(GltfDocument& document, std::size_t index, Zeros zeros) {
     Accessor a{.json = document.item(GltfArray::kAccessors, index),
                .type = {},
                .base = {},
@@ -115,9 +120,8 @@ Accessor open_accessor(GltfDocument& document, std::size_t index) {
             number->fail("elements of " + std::to_string(used) + " bytes with a stride of " +
                          std::to_string(a.base.stride));
         a.base.data = fit(json, view, json.integer_or("byteOffset", 0), a.count, a.base.stride, used);
-    } else if (a.count > kMostZeros) {
-        json.fail(std::to_string(a.count) + " elements without a buffer view: at most " + std::to_string(kMostZeros),
-                  ErrorCode::kLimit);
+    } else if (zeros == Zeros::kLimited) {
+        check_zeros(a);
     }
     if (const std::optional<Json> sparse = json.find("sparse")) {
         const std::uint64_t replaced = sparse->at("count").integer();

@@ -59,7 +59,11 @@ enum ComponentFormats : unsigned {
 // Only the number of elements, for counting before anything is read.
 std::uint64_t accessor_count(const GltfDocument& document, std::size_t index);
 
-Accessor open_accessor(GltfDocument& document, std::size_t index);
+// An accessor without a buffer view is all zeros. A few bytes of file may not ask for gigabytes of them, unless
+// somebody else brings the elements; then check_zeros() comes after that. Both throw kLimit.
+enum class Zeros { kLimited, kToBeReplaced };
+Accessor open_accessor(GltfDocument& document, std::size_t index, Zeros zeros = Zeros::kLimited);
+void check_zeros(const Accessor& accessor);
 // Throws kInput, at the place that refers to the accessor, unless type and format are wanted.
 void expect_format(const Json& referrer, const Accessor& accessor, std::string_view type, unsigned formats);
 

@@ -4,6 +4,7 @@
 #include "load/uri.h"
 
 #include <algorithm>
+#include <iterator>
 
 namespace tessera {
 namespace {
@@ -12,21 +13,31 @@ constexpr std::array<std::string_view, static_cast<std::size_t>(GltfArray::kCoun
     "accessors", "animations", "buffers",  "bufferViews", "cameras", "images",  "materials",
     "meshes",    "nodes",      "samplers", "scenes",      "skins",   "textures"};
 
-constexpr std::array<std::string_view, 15> kKnownExtensions = {"KHR_draco_mesh_compression",
-                                                               "EXT_meshopt_compression",
-                                                               "EXT_mesh_gpu_instancing",
-                                                               "KHR_materials_variants",
-                                                               "KHR_materials_pbrSpecularGlossiness",
-                                                               "KHR_materials_ior",
-                                                               "KHR_materials_specular",
-                                                               "KHR_lights_punctual",
-                                                               "KHR_materials_unlit",
-                                                               "KHR_materials_emissive_strength",
-                                                               "KHR_texture_transform",
-                                                               "EXT_texture_webp",
-                                                               "KHR_mesh_quantization",
-                                                               "TESSERA_materials_phong",
-                                                               "TESSERA_lights"};
+constexpr std::string_view kKnownExtensions[] = {"KHR_draco_mesh_compression",
+                                                 "EXT_meshopt_compression",
+                                                 "EXT_mesh_gpu_instancing",
+                                                 "KHR_materials_variants",
+                                                 "KHR_materials_pbrSpecularGlossiness",
+                                                 "KHR_materials_ior",
+                                                 "KHR_materials_specular",
+                                                 "KHR_lights_punctual",
+                                                 "KHR_materials_unlit",
+                                                 "KHR_materials_emissive_strength",
+                                                 "KHR_texture_transform",
+                                                 "EXT_texture_webp",
+                                                 "KHR_mesh_quantization",
+                                                 "TESSERA_materials_phong",
+                                                 "TESSERA_lights"};
+
+// Read as data of the materials, which shading does not use yet.
+constexpr std::string_view kUndrawnExtensions[] = {
+    "KHR_materials_clearcoat",  "KHR_materials_sheen",       "KHR_materials_transmission", "KHR_materials_volume",
+    "KHR_materials_anisotropy", "KHR_materials_iridescence", "KHR_materials_dispersion"};
+
+template <class Names>
+bool has(const Names& names, std::string_view name) {
+    return std::find(std::begin(names), std::end(names), name) != std::end(names);
+}
 
 // What parsing `json` takes: a padded copy and the strings are at most as long as the text, and each
 // structural character costs up to three 8-byte words of tape and index.
@@ -38,9 +49,7 @@ std::uint64_t parse_bytes(std::string_view json) {
 
 }  // namespace
 
-bool is_known_extension(std::string_view name) {
-    return std::find(kKnownExtensions.begin(), kKnownExtensions.end(), name) != kKnownExtensions.end();
-}
+bool is_known_extension(std::string_view name) { return has(kKnownExtensions, name) || has(kUndrawnExtensions, name); }
 
 std::optional<Json> find_extension(const Json& object, std::string_view name) {
     const std::optional<Json> extensions = object.find("extensions");
@@ -169,8 +178,13 @@ void GltfDocument::note_extensions(const Json& object) {
 
 void GltfDocument::note_extension(std::string_view name) {
     constexpr std::size_t kMost = 256;
-    if (is_known_extension(name) || ignored_.size() >= kMost) return;
-    if (std::find(ignored_.begin(), ignored_.end(), name) != ignored_.end()) return;
+    if (has(kUndrawnExtensions, name)) {
+        if (has(undrawn_, name)) return;
+        undrawn_.emplace_back(name);
+        context_.warn("extension " + std::string(name) + " is read, but not drawn yet");
+        return;
+    }
+    if (is_known_extension(name) || ignored_.size() >= kMost || has(ignored_, name)) return;
     ignored_.emplace_back(name);
     context_.warn("extension " + std::string(name) + " is ignored");
 }

@@ -62,8 +62,8 @@ class GltfDocument {
     // The bytes that the member "uri" of an image names.
     Bytes read_uri(const Json& uri);
 
-    // Remembers the extensions of an object ("extensions": {...}), so that each that is not known is
-    // warned about once.
+    // Remembers the extensions of an object ("extensions": {...}), so that each that is not known, or read but
+    // not drawn, is warned about once.
     void note_extensions(const Json& object);
     void note_extension(std::string_view name);
     const std::vector<std::string>& ignored_extensions() const { return ignored_; }
@@ -91,8 +91,8 @@ class GltfDocument {
     };
     std::vector<Buffer> buffers_;
     std::size_t variant_count_ = 0;
-    std::vector<Bytes> unpacked_;  // views that were compressed
-    std::vector<std::string> ignored_;
+    std::vector<Bytes> unpacked_;                 // views that were compressed
+    std::vector<std::string> ignored_, undrawn_;  // extensions that were warned about
 };
 
 // An extension of glTF that the reader knows.

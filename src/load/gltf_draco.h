@@ -16,11 +16,18 @@
 
 namespace tessera {
 
+// How many triangles the accessors of a primitive promise. Those of a strip may be fewer: the packed data hold them
+// as a list, without the degenerate ones that turn a strip around.
+struct DracoTriangles {
+    std::size_t count;
+    bool strip;
+};
+
 class DracoPrimitive {
   public:
-    // `json`: the extension object of a primitive; `triangles`: what its accessors promise. Throws kInput for what
-    // cannot be unpacked, and unless it is as many triangles: memory is bounded by that.
-    DracoPrimitive(GltfDocument& document, const Json& json, std::size_t triangles);
+    // `json`: the extension object of a primitive. Throws kInput for what cannot be unpacked, and for other numbers
+    // of triangles than promised, kLimit for more memory than allowed: what Draco takes is charged before it does.
+    DracoPrimitive(GltfDocument& document, const Json& json, DracoTriangles promised);
 
     std::size_t vertices() const { return vertices_; }
     // Lets the accessor of an attribute read what was packed of it, if it was.
@@ -37,6 +44,7 @@ class DracoPrimitive {
     std::vector<std::uint32_t> indices_;
     std::vector<std::vector<std::byte>> values_;
     std::size_t vertices_ = 0;
+    bool strip_ = false;
 };
 
 }  // namespace tessera

@@ -1,4 +1,6 @@
-// Materials: metallic-roughness, unlit, and the Phong family of TESSERA_materials_phong.
+// Materials: metallic-roughness, specular-glossiness, unlit, and the Phong family of TESSERA_materials_phong.
+#include "load/gltf_material.h"
+
 #include "load/gltf_parts.h"
 
 #include <algorithm>
@@ -15,10 +17,13 @@ class MaterialReader {
         m_.name = json_.string_or("name");
         m_.extras = json_.raw_or_empty("extras");
         if (const std::optional<Json> pbr = json_.find("pbrMetallicRoughness")) read_metallic_roughness(*pbr);
+        if (const auto extension = find_extension(json_, "KHR_materials_ior")) read_ior(*extension);
+        // Specular-glossiness has a reflectance of its own.
         if (const auto extension = find_extension(json_, "KHR_materials_pbrSpecularGlossiness"))
             read_specular_glossiness(*extension);
-        if (const auto extension = find_extension(json_, "KHR_materials_ior")) read_ior(*extension);
-        if (const auto extension = find_extension(json_, "KHR_materials_specular")) read_specular(*extension);
+        else if (const auto specular = find_extension(json_, "KHR_materials_specular"))
+            read_specular(*specular);
+        read_material_extensions(document_, json_, m_);
         read_texture(json_, "emissiveTexture", TextureSlot::kEmissive);
         read_factor(json_, "emissiveFactor", {&m_.emissive.x, 3}, 1);
         if (const std::optional<Json> info = read_texture(json_, "normalTexture", TextureSlot::kNormal))
@@ -35,44 +40,11 @@ class MaterialReader {
     }
 
   private:
-    static constexpr float kNoMaximum = std::numeric_limits<float>::max();
-
-    // A number or an array of numbers, clamped to 0 .. most with a warning.
     void read_factor(const Json& object, std::string_view key, std::span<float> out, float most) {
-        const std::optional<Json> value = object.find(key);
-        if (!value) return;
-        if (out.size() == 1)
-            out[0] = value->number();
-        else
-            value->numbers(out);
-        bool clamped = false;
-        for (float& factor : out) {
-            const float legal = std::clamp(factor, 0.0f, most);
-            clamped = clamped || legal != factor;
-            factor = legal;
-        }
-        if (clamped) document_.context().warn(value->place() + ": a factor is out of range and is clamped");
+        tessera::read_factor(document_, object, key, out, most);
     }
-
-    // Returns the texture information object when it is there.
     std::optional<Json> read_texture(const Json& object, std::string_view key, TextureSlot slot) {
-        std::optional<Json> info = object.find(key);
-        if (!info) return info;
-        constexpr std::uint64_t kMostUvSet = 0xffff;
-        document_.note_extensions(*info);
-        TextureRef& ref = m_.texture(slot);
-        ref = {};
-        ref.texture = info->at("index").reference(document_.size(GltfArray::kTextures), "texture");
-        if (const std::optional<Json> set = info->find("texCoord"))
-            ref.uv_set = static_cast<int>(set->integer(kMostUvSet));
-        if (const auto transform = find_extension(*info, "KHR_texture_transform")) {
-            transform->numbers_or_keep("offset", {&ref.offset.x, 2});
-            transform->numbers_or_keep("scale", {&ref.scale.x, 2});
-            ref.rotation = transform->number_or("rotation", 0);
-            if (const std::optional<Json> set = transform->find("texCoord"))
-                ref.uv_set = static_cast<int>(set->integer(kMostUvSet));
-        }
-        return info;
+        return tessera::read_texture(document_, object, key, m_.texture(slot));
     }
 
     void read_metallic_roughness(const Json& pbr) {
@@ -84,12 +56,12 @@ class MaterialReader {
         read_texture(pbr, "metallicRoughnessTexture", TextureSlot::kMetallicRoughness);
     }
 
-    // As a dielectric whose reflectance is the specular colour.
+    // In place of what pbrMetallicRoughness says.
     void read_specular_glossiness(const Json& pbr) {
         document_.note_extensions(pbr);
+        m_.model = ShadingModel::kSpecularGlossiness;
         m_.base_color = {1, 1, 1, 1};
         m_.metallic = 0;
-        m_.ior = 0;
         float glossiness = 1;
         read_factor(pbr, "diffuseFactor", {&m_.base_color.x, 4}, 1);
         read_factor(pbr, "specularFactor", {&m_.specular_color.x, 3}, 1);
@@ -97,7 +69,7 @@ class MaterialReader {
         m_.roughness = 1 - glossiness;
         m_.texture(TextureSlot::kBaseColor) = m_.texture(TextureSlot::kMetallicRoughness) = {};
         read_texture(pbr, "diffuseTexture", TextureSlot::kBaseColor);
-        leave_out(pbr, "specularGlossinessTexture");
+        read_texture(pbr, "specularGlossinessTexture", TextureSlot::kSpecularColor);
     }
 
     void read_ior(const Json& json) {
@@ -110,13 +82,8 @@ class MaterialReader {
     void read_specular(const Json& json) {
         read_factor(json, "specularFactor", {&m_.specular_strength, 1}, 1);
         read_factor(json, "specularColorFactor", {&m_.specular_color.x, 3}, kNoMaximum);
-        leave_out(json, "specularTexture");
-        leave_out(json, "specularColorTexture");
-    }
-
-    void leave_out(const Json& object, std::string_view texture) {
-        if (const std::optional<Json> json = object.find(texture))
-            document_.context().warn(json->place() + ": is not drawn; the factors count");
+        read_texture(json, "specularTexture", TextureSlot::kSpecular);
+        read_texture(json, "specularColorTexture", TextureSlot::kSpecularColor);
     }
 
     void read_alpha() {
@@ -157,6 +124,41 @@ class MaterialReader {
 };
 
 }  // namespace
+
+void read_factor(GltfDocument& document, const Json& object, std::string_view key, std::span<float> out, float most,
+                 float least) {
+    const std::optional<Json> value = object.find(key);
+    if (!value) return;
+    if (out.size() == 1)
+        out[0] = value->number();
+    else
+        value->numbers(out);
+    bool clamped = false;
+    for (float& factor : out) {
+        const float legal = std::clamp(factor, least, most);
+        clamped = clamped || legal != factor;
+        factor = legal;
+    }
+    if (clamped) document.context().warn(value->place() + ": a factor is out of range and is clamped");
+}
+
+std::optional<Json> read_texture(GltfDocument& document, const Json& object, std::string_view key, TextureRef& ref) {
+    std::optional<Json> info = object.find(key);
+    if (!info) return info;
+    constexpr std::uint64_t kMostUvSet = 0xffff;
+    document.note_extensions(*info);
+    ref = {};
+    ref.texture = info->at("index").reference(document.size(GltfArray::kTextures), "texture");
+    if (const std::optional<Json> set = info->find("texCoord")) ref.uv_set = static_cast<int>(set->integer(kMostUvSet));
+    if (const auto transform = find_extension(*info, "KHR_texture_transform")) {
+        transform->numbers_or_keep("offset", {&ref.offset.x, 2});
+        transform->numbers_or_keep("scale", {&ref.scale.x, 2});
+        ref.rotation = transform->number_or("rotation", 0);
+        if (const std::optional<Json> set = transform->find("texCoord"))
+            ref.uv_set = static_cast<int>(set->integer(kMostUvSet));
+    }
+    return info;
+}
 
 void read_materials(GltfDocument& document, Scene& scene) {
     make_room(document, GltfArray::kMaterials, scene.materials);

@@ -34,14 +34,21 @@ struct PrimitiveSource {
     std::optional<DracoPrimitive> draco = std::nullopt;
 };
 
+// The indices of a primitive, among its attributes' names.
+constexpr std::string_view kIndices = {};
+
 // Opens the accessor that `json`, the attribute of that name, refers to and checks it, with its number of
 // elements unless 0.
 Accessor attribute(PrimitiveSource& source, std::string_view name, const Json& json, std::string_view type,
                    unsigned formats, std::size_t vertices) {
     const int number = json.reference(source.document.size(GltfArray::kAccessors), "accessor");
-    Accessor accessor = open_accessor(source.document, static_cast<std::size_t>(number));
-    if (source.draco) source.draco->supply(name, accessor);
+    Accessor accessor = open_accessor(source.document, static_cast<std::size_t>(number),
+                                      source.draco ? Zeros::kToBeReplaced : Zeros::kLimited);
     expect_format(json, accessor, type, formats);
+    if (source.draco) {
+        name == kIndices ? source.draco->supply_indices(accessor) : source.draco->supply(name, accessor);
+        check_zeros(accessor);
+    }
     if (vertices != 0 && accessor.count != vertices)
         json.fail(std::to_string(accessor.count) + " elements, POSITION has " + std::to_string(vertices));
     return accessor;
@@ -133,9 +140,8 @@ MorphTarget read_target(GltfDocument& document, const Json& json, std::size_t ve
 }
 
 void read_primitive_indices(PrimitiveSource& source, const Json& json, Primitive& p) {
-    Accessor accessor = attribute(source, {}, json, "SCALAR", kPlainUnsigned | kUnsignedInts, 0);
-    if (source.draco) source.draco->supply_indices(accessor);
-    p.indices = read_indices(source.document, accessor);
+    p.indices =
+        read_indices(source.document, attribute(source, kIndices, json, "SCALAR", kPlainUnsigned | kUnsignedInts, 0));
     const std::uint32_t largest = largest_index(p.indices);
     if (largest >= p.positions.size())
         json.fail("index " + std::to_string(largest) + " of " + std::to_string(p.positions.size()) + " vertices");
@@ -158,11 +164,16 @@ void read_variants(GltfDocument& document, const Json& json, Primitive& p) {
     });
 }
 
-// How many triangles a packed primitive must have: lists of triangles, with indices.
-std::size_t packed_triangles(const GltfDocument& document, const Json& json, PrimitiveMode mode) {
-    if (mode != PrimitiveMode::kTriangles) json.fail("only lists of triangles are packed by Draco");
+// What a packed primitive may be: triangles or a strip of them, with indices. Draco unpacks both to a list.
+DracoTriangles packed_triangles(const GltfDocument& document, const Json& json, PrimitiveMode& mode) {
+    if (mode != PrimitiveMode::kTriangles && mode != PrimitiveMode::kTriangleStrip)
+        json.fail("only triangles and strips of them are packed by Draco");
     const int indices = json.at("indices").reference(document.size(GltfArray::kAccessors), "accessor");
-    return static_cast<std::size_t>(accessor_count(document, static_cast<std::size_t>(indices)) / 3);
+    const std::uint64_t count = accessor_count(document, static_cast<std::size_t>(indices));
+    const bool strip = mode == PrimitiveMode::kTriangleStrip;
+    const std::uint64_t triangles = triangle_count(mode, count);
+    mode = PrimitiveMode::kTriangles;
+    return {static_cast<std::size_t>(triangles), strip};
 }
 
 Primitive read_primitive(GltfDocument& document, const Json& json) {

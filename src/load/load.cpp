@@ -41,7 +41,7 @@ Scene read_plain(LoadContext& context, std::span<const std::byte> file, const Sc
         const GlbChunks chunks = split_glb(context, file);
         return read_gltf(context, chunks.json, chunks.binary, files);
     }
-    if (is_ply(file)) return read_ply(context, file);
+    if (is_ply(file)) return read_ply(context, file, files);
     if (has_extension(context.file(), ".obj")) return read_obj(context, text, files);
     if (file.empty()) context.fail("the file is empty");
     if (has_extension(context.file(), ".stl") || is_binary_stl(file)) return read_stl(context, file);

@@ -9,11 +9,6 @@
 namespace tessera {
 namespace {
 
-std::string base_name(const std::string& path) {
-    const std::size_t slash = path.rfind('/');
-    return slash == std::string::npos ? path : path.substr(slash + 1);
-}
-
 bool is_black(const Vec3& c) { return c.x == 0 && c.y == 0 && c.z == 0; }
 
 // A channel of a pixel, 0 .. 65535.
@@ -119,8 +114,8 @@ int ObjMaterials::add_material(const MtlMaterial& m) {
     material.normal_scale = m.map_normal.bump;
     set_opacity(m, number);
     set_physical(m, number);
-    if (!m.map_specular.file.empty() || !m.map_shininess.file.empty())
-        warn_once("maps of Ks and Ns are not drawn; the factors count");
+    set_highlight(m, number);
+    set_glass(m, number);
     if (!m.map_bump.file.empty()) warn_once("bump maps of heights are not drawn");
     if (!m.map_other.file.empty()) warn_once("disp, decal and refl are not drawn");
     return number;
@@ -154,6 +149,33 @@ void ObjMaterials::set_physical(const MtlMaterial& m, int number) {
     if (packed != kNone)
         material.texture(TextureSlot::kMetallicRoughness) =
             texture_of(packed, roughness != kNone ? m.map_roughness : m.map_metallic);
+}
+
+// The highlight of the Phong models: Ks times a colour, Ns times a number, which the slot has as alpha.
+void ObjMaterials::set_highlight(const MtlMaterial& m, int number) {
+    Material& material = scene_.materials[static_cast<std::size_t>(number)];
+    if (material.model != ShadingModel::kBlinnPhong) return;
+    material.texture(TextureSlot::kSpecularColor) = texture(m.map_specular);
+    const int shininess = picture(m.map_shininess);
+    if (shininess == kNone) return;
+    const char channel = m.map_shininess.channel != 0 ? m.map_shininess.channel : 'l';
+    material.texture(TextureSlot::kSpecular) = texture_of(combined(kNone, shininess, channel, 3), m.map_shininess);
+}
+
+// Illumination models 4, 6, 7 and 9 are those of glass: what passes has the colour Tf and is bent by Ni. Elsewhere
+// writers give Ni without a meaning.
+void ObjMaterials::set_glass(const MtlMaterial& m, int number) {
+    if (m.illumination != 4 && m.illumination != 6 && m.illumination != 7 && m.illumination != 9) return;
+    Material& material = scene_.materials[static_cast<std::size_t>(number)];
+    warn_once("glass (illum 4, 6, 7, 9) is read, but not drawn yet");
+    material.ior = std::max(m.ior, 1.0f);
+    material.transmission.strength = std::clamp(std::max({m.filter.x, m.filter.y, m.filter.z}), 0.0f, 1.0f);
+    // The Phong models have no other use for the base colour, which is the colour of what passes.
+    if (material.model == ShadingModel::kBlinnPhong && material.transmission.strength > 0)
+        for (const auto& [to, from] :
+             {std::pair(&material.base_color.x, m.filter.x), std::pair(&material.base_color.y, m.filter.y),
+              std::pair(&material.base_color.z, m.filter.z)})
+            *to = std::clamp(from, 0.0f, 1.0f) / material.transmission.strength;
 }
 
 TextureRef ObjMaterials::texture(const MtlTexture& t) {
@@ -192,15 +214,8 @@ int ObjMaterials::picture(const MtlTexture& t) {
     const std::string place = "the texture " + quoted(t.file);
     int& number = pictures_[t.file];
     number = kNone;
-    const auto open = [&]() -> Bytes {
-        if (!context_.options().load_pictures) return {};
-        try {
-            return files_.read(context_, t.file, UINT64_MAX, place);
-        } catch (const Error& error) {
-            const std::string name = base_name(t.file);
-            if (error.code() != ErrorCode::kInput || name == t.file || name.empty()) throw;
-            return files_.read(context_, name, UINT64_MAX, place);
-        }
+    const auto open = [&] {
+        return context_.options().load_pictures ? read_beside(context_, files_, t.file, place) : Bytes{};
     };
     try {
         PictureFile file{scene_.pictures.size(), place, {}, open(), {}};

@@ -44,6 +44,8 @@ class ObjMaterials {
     int add_material(const MtlMaterial& m);
     void set_opacity(const MtlMaterial& m, int number);
     void set_physical(const MtlMaterial& m, int number);
+    void set_highlight(const MtlMaterial& m, int number);
+    void set_glass(const MtlMaterial& m, int number);
     TextureRef texture(const MtlTexture& t);
     TextureRef texture_of(int picture, const MtlTexture& t);
     int picture(const MtlTexture& t);

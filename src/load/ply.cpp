@@ -2,10 +2,10 @@
 
 #include "image/color.h"
 #include "load/mesh_scene.h"
+#include "load/pictures.h"
 #include "load/ply_header.h"
-#include "load/polygon.h"
+#include "load/ply_mesh.h"
 #include "load/text.h"
-#include "scene/vertex_normals.h"
 
 #include <array>
 #include <bit>
@@ -101,18 +101,6 @@ class BinaryNumbers {
     std::size_t offset_, at_ = 0;
 };
 
-// What of the file is used.
-struct PlyMesh {
-    std::vector<Vec3> positions, normals;
-    std::vector<Vec4> colors;
-    std::vector<Vec2> texcoords;
-    // Faces and edges: the vertices of all, and how many each has; -1 ends a strip.
-    std::vector<std::int64_t> corners, strip;
-    std::vector<std::uint32_t> sizes;
-    std::vector<std::int64_t> edges;
-    std::string corners_place;
-};
-
 int find_one(const PlyElement& element, std::initializer_list<const char*> names) {
     for (const char* name : names)
         if (const int at = element.find(name); at >= 0) return at;
@@ -141,10 +129,16 @@ class PlyReader {
             else
                 skip(numbers, element);
         }
+        if (!mesh_.wedges.empty()) pad_wedges();
         return std::move(mesh_);
     }
 
   private:
+    // Corners of faces that have none.
+    void pad_wedges() {
+        while (mesh_.wedges.size() < mesh_.corners.size()) append(context_, mesh_.wedges, PlyWedge{});
+    }
+
     template <class Numbers>
     std::uint64_t length(Numbers& numbers, const PlyProperty& list) {
         const double n = numbers.next(list.length_type);
@@ -219,7 +213,10 @@ class PlyReader {
     template <class Numbers>
     void read_lists(Numbers& numbers, const PlyElement& e) {
         const bool edges = e.name == "edge", strips = e.name == "tristrips";
+        const bool faces = !edges && !strips;
         const int list = edges ? -1 : find_one(e, {"vertex_indices", "vertex_index"});
+        const int wedges = faces ? list_named(e, "texcoord") : -1;
+        const int texture = faces && wedges >= 0 ? e.find("texnumber") : -1;
         const int first = edges ? e.find("vertex1") : -1, second = edges ? e.find("vertex2") : -1;
         if (list < 0 && (first < 0 || second < 0)) {
             context_.warn("the elements " + quoted(e.name) + " name no vertices; ignored");
@@ -227,21 +224,61 @@ class PlyReader {
         }
         if (list >= 0 && !e.properties[static_cast<std::size_t>(list)].is_list)
             context_.fail("the vertices of " + quoted(e.name) + " are no list");
-        for (std::uint64_t i = 0; i < e.count; ++i)
+        if (wedges >= 0) pad_wedges();
+        for (std::uint64_t i = 0; i < e.count; ++i) {
+            const std::size_t first_wedge = mesh_.wedges.size();
+            std::uint64_t corners = 0;
+            double number = 0;  // of the texture
             for (std::size_t p = 0; p < e.properties.size(); ++p) {
                 const PlyProperty& property = e.properties[p];
                 const int at = static_cast<int>(p);
                 if (at == list) {
-                    const std::uint64_t n = length(numbers, property);
-                    for (std::uint64_t k = 0; k < n; ++k)
+                    corners = length(numbers, property);
+                    for (std::uint64_t k = 0; k < corners; ++k)
                         append(context_, strips ? mesh_.strip : mesh_.corners, vertex(numbers, property.type));
-                    if (!strips) append(context_, mesh_.sizes, static_cast<std::uint32_t>(n));
+                    if (!strips) append(context_, mesh_.sizes, static_cast<std::uint32_t>(corners));
+                } else if (at == wedges) {
+                    read_wedges(numbers, property);
+                } else if (at == texture && !property.is_list) {
+                    number = numbers.next(property.type);
                 } else if ((at == first || at == second) && !property.is_list) {
                     append(context_, mesh_.edges, vertex(numbers, property.type));
                 } else {
                     skip_property(numbers, property);
                 }
             }
+            if (wedges >= 0) finish_wedges(first_wedge, corners, number);
+        }
+    }
+    static int list_named(const PlyElement& e, std::string_view name) {
+        const int at = e.find(name);
+        return at >= 0 && e.properties[static_cast<std::size_t>(at)].is_list ? at : -1;
+    }
+    // u and v of each corner of a face.
+    template <class Numbers>
+    void read_wedges(Numbers& numbers, const PlyProperty& property) {
+        const std::uint64_t n = length(numbers, property);
+        for (std::uint64_t k = 0; k < n; ++k) {
+            const auto value = static_cast<float>(numbers.next(property.type));
+            if (k % 2 == 0)
+                append(context_, mesh_.wedges, PlyWedge{{value, 0}, 0});
+            else
+                mesh_.wedges.back().uv.y = 1 - value;  // PLY counts from the bottom
+        }
+        odd_ = n % 2 != 0;
+    }
+    void finish_wedges(std::size_t first, std::uint64_t corners, double texture) {
+        if (odd_ || mesh_.wedges.size() - first != corners) {
+            if (!warned_)
+                context_.warn("a face whose texture coordinates are not two for each corner; they are left out");
+            warned_ = true;
+            mesh_.wedges.resize(first);
+            for (std::uint64_t k = 0; k < corners; ++k) append(context_, mesh_.wedges, PlyWedge{});
+        }
+        odd_ = false;
+        constexpr double kMost = 1e6;
+        const int number = texture >= 0 && texture <= kMost ? static_cast<int>(texture) : kNone;
+        for (std::size_t k = first; k < mesh_.wedges.size(); ++k) mesh_.wedges[k].texture = number;
     }
     template <class Numbers>
     std::int64_t vertex(Numbers& numbers, PlyType type) {
@@ -254,6 +291,7 @@ class PlyReader {
     LoadContext& context_;
     const PlyHeader& header_;
     PlyMesh mesh_;
+    bool odd_ = false, warned_ = false;  // texture coordinates of a face
 };
 
 PlyMesh read_data(LoadContext& context, const PlyHeader& header, std::string_view data) {
@@ -270,86 +308,52 @@ PlyMesh read_data(LoadContext& context, const PlyHeader& header, std::string_vie
     return reader.read(BinaryNumbers<true>(context, data, header.size));
 }
 
-std::uint32_t checked_vertex(const LoadContext& context, std::int64_t number, const PlyMesh& mesh,
-                             const std::string& of) {
-    if (number < 0 || static_cast<std::uint64_t>(number) >= mesh.positions.size())
-        context.fail("vertex " + std::to_string(number) + " of " + std::to_string(mesh.positions.size()), of);
-    return static_cast<std::uint32_t>(number);
-}
-
-// The triangles of faces and strips.
-std::vector<std::uint32_t> triangles_of(LoadContext& context, const PlyMesh& mesh) {
-    std::vector<std::uint32_t> triangles, face, split;
-    std::vector<Vec3> polygon;
-    std::size_t first = 0, largest = 0;
-    for (std::size_t f = 0; f < mesh.sizes.size(); ++f) {
-        const std::string place = "face " + std::to_string(f);
-        const std::size_t n = mesh.sizes[f];
-        if (n > 3) {
-            count_triangles(context, triangles.size() / 3 + n - 2, place);
-            charge_polygon(context, n, largest);
-        }
-        face.clear(), polygon.clear(), split.clear();
-        for (std::size_t k = 0; k < n; ++k) {
-            face.push_back(checked_vertex(context, mesh.corners[first + k], mesh, place));
-            if (n > 3) polygon.push_back(mesh.positions[face.back()]);
-        }
-        first += n;
-        if (n == 3)
-            split = {0, 1, 2};
-        else
-            triangulate_polygon(polygon, split);
-        for (const std::uint32_t corner : split) append(context, triangles, face[corner]);
-        count_triangles(context, triangles.size() / 3, place);
+// Grey, or white under the picture that a file of this name holds.
+Material material_of(LoadContext& context, Scene& scene, const SceneFiles& files, const std::string& name,
+                     std::vector<PictureFile>& pictures) {
+    Material material = plain_material();
+    const std::string place = "TextureFile " + quoted(name);
+    try {
+        PictureFile file{scene.pictures.size(), place, {}, {}, {}};
+        if (context.options().load_pictures) file.owned = read_beside(context, files, name, place);
+        file.bytes = file.owned.span();
+        context.charge(sizeof(Picture) + sizeof(Texture) + name.size());
+        Picture picture;
+        picture.uri = name;
+        Texture texture;
+        texture.picture = static_cast<int>(scene.pictures.size());
+        scene.pictures.push_back(std::move(picture));
+        if (context.options().load_pictures) pictures.push_back(std::move(file));
+        material.base_color = {1, 1, 1, 1};
+        material.texture(TextureSlot::kBaseColor).texture = static_cast<int>(scene.textures.size());
+        scene.textures.push_back(std::move(texture));
+    } catch (const Error& error) {
+        if (error.code() != ErrorCode::kInput) throw;
+        context.warn(place + ": " + error.message());
     }
-    // Strips, which -1 parts: every second triangle is turned over.
-    std::size_t begin = 0;
-    for (std::size_t i = 0; i < mesh.strip.size(); ++i) {
-        if (mesh.strip[i] < 0) {
-            begin = i + 1;
-            continue;
-        }
-        const std::uint32_t c = checked_vertex(context, mesh.strip[i], mesh, "tristrips");
-        if (i < begin + 2) continue;
-        const auto a = static_cast<std::uint32_t>(mesh.strip[i - 2]), b = static_cast<std::uint32_t>(mesh.strip[i - 1]);
-        const bool turned = (i - begin) % 2 != 0;
-        for (const std::uint32_t corner : {turned ? b : a, turned ? a : b, c}) append(context, triangles, corner);
-        count_triangles(context, triangles.size() / 3, "tristrips");
+    return material;
+}
+
+// The parts of the mesh with a material for each texture that they name.
+void add_parts(LoadContext& context, Scene& scene, const SceneFiles& files, const PlyHeader& header,
+               std::vector<PlyPart>&& parts) {
+    Mesh whole;
+    std::vector<PictureFile> pictures;
+    for (PlyPart& part : parts) {
+        Primitive& p = part.primitive;
+        p.material = static_cast<int>(scene.materials.size());
+        context.charge(sizeof(Material) + sizeof(Primitive));
+        const bool textured = part.texture != kNone && !p.texcoords.empty();
+        scene.materials.push_back(textured ? material_of(context, scene, files,
+                                                         header.texture_files[static_cast<std::size_t>(part.texture)],
+                                                         pictures)
+                                           : plain_material());
+        if (!p.colors.empty()) scene.materials.back().base_color = {1, 1, 1, 1};
+        whole.primitives.push_back(std::move(p));
     }
-    return triangles;
-}
-
-template <class T>
-void gather(LoadContext& context, std::vector<T>& values, const std::vector<std::uint32_t>& from) {
-    if (values.empty()) return;
-    std::vector<T> gathered;
-    resize(context, gathered, from.size());
-    for (std::size_t i = 0; i < from.size(); ++i) gathered[i] = values[from[i]];
-    values = std::move(gathered);
-}
-
-// Smooth normals but for sharp edges, where vertices become several.
-void make_normals(LoadContext& context, PlyMesh& mesh, std::vector<std::uint32_t>& triangles) {
-    context.charge(std::uint64_t{triangles.size()} * (2 * sizeof(std::uint32_t) + sizeof(Vec3)));
-    std::size_t count = 0;
-    std::vector<std::uint32_t> groups = crease_groups(mesh.positions, triangles, count);
-    context.charge(std::uint64_t{count} * (sizeof(Vec3) + 3 * sizeof(double)));
-    mesh.normals = angle_weighted_normals(mesh.positions, triangles, groups, count);
-    std::vector<std::uint32_t> from(count);
-    for (std::size_t i = 0; i < triangles.size(); ++i) from[groups[i]] = triangles[i];
-    gather(context, mesh.positions, from);
-    gather(context, mesh.colors, from);
-    gather(context, mesh.texcoords, from);
-    triangles = std::move(groups);
-}
-
-void turn_triangles(const PlyMesh& mesh, std::vector<std::uint32_t>& triangles) {
-    for (std::size_t i = 0; i < triangles.size(); i += 3) {
-        std::uint32_t* const t = &triangles[i];
-        if (is_turned({mesh.positions[t[0]], mesh.positions[t[1]], mesh.positions[t[2]]},
-                      {mesh.normals[t[0]], mesh.normals[t[1]], mesh.normals[t[2]]}))
-            std::swap(t[1], t[2]);
-    }
+    if (whole.primitives.empty()) scene.materials.push_back(plain_material());
+    decode_pictures(context, std::move(pictures), scene, PictureFaults::kWarn);
+    add_mesh(context, scene, std::move(whole));
 }
 
 }  // namespace
@@ -359,36 +363,25 @@ bool is_ply(std::span<const std::byte> file) {
     return text.starts_with("ply\n") || text.starts_with("ply\r");
 }
 
-Scene read_ply(LoadContext& context, std::span<const std::byte> file) {
+Scene read_ply(LoadContext& context, std::span<const std::byte> file, const SceneFiles& files) {
     const std::string_view text(reinterpret_cast<const char*>(file.data()), file.size());
     const PlyHeader header = read_ply_header(context, text);
     PlyMesh mesh = read_data(context, header, text.substr(header.size));
-
-    Scene scene;
-    Primitive p;
-    p.material = 0;
-    p.indices = triangles_of(context, mesh);
-    if (p.indices.empty()) {
-        p.mode = mesh.edges.empty() ? PrimitiveMode::kPoints : PrimitiveMode::kLines;
-        for (const std::int64_t end : mesh.edges)
-            append(context, p.indices, checked_vertex(context, end, mesh, "edges"));
-    }
+    PlyTriangles triangles = triangulate(context, mesh);
     for (Vec3& n : mesh.normals) n = unit_normal(n);
-    if (p.mode == PrimitiveMode::kTriangles) {
+    Scene scene;
+    std::vector<PlyPart> parts;
+    if (triangles.vertices.empty()) {
+        parts = lines_or_points(context, std::move(mesh));
+    } else {
         if (mesh.normals.empty())
-            make_normals(context, mesh, p.indices);
+            make_normals(context, mesh, triangles);
         else
-            turn_triangles(mesh, p.indices);
+            turn_to_normals(mesh, triangles);
+        parts = split_by_texture(context, std::move(mesh), std::move(triangles),
+                                 static_cast<int>(header.texture_files.size()));
     }
-    p.positions = std::move(mesh.positions);
-    p.normals = std::move(mesh.normals);
-    if (!mesh.colors.empty()) p.colors.push_back(std::move(mesh.colors));
-    if (!mesh.texcoords.empty()) p.texcoords.push_back(std::move(mesh.texcoords));
-    scene.materials.push_back(plain_material());
-    if (!p.colors.empty()) scene.materials[0].base_color = {1, 1, 1, 1};
-    Mesh whole;
-    if (!p.positions.empty()) whole.primitives.push_back(std::move(p));
-    add_mesh(context, scene, std::move(whole));
+    add_parts(context, scene, files, header, std::move(parts));
     finish_scene(context, scene);
     return scene;
 }

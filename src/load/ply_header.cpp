@@ -11,7 +11,7 @@
 namespace tessera {
 namespace {
 
-constexpr std::size_t kMaxElements = 256, kMaxProperties = 1024;
+constexpr std::size_t kMaxElements = 256, kMaxProperties = 1024, kMaxTextures = 1024;
 
 std::optional<PlyType> type_named(std::string_view name) {
     using enum PlyType;
@@ -65,6 +65,14 @@ PlyEncoding read_format(const LoadContext& context, TextCursor& text) {
     if (name == "binary_little_endian") return PlyEncoding::kLittleEndian;
     if (name == "binary_big_endian") return PlyEncoding::kBigEndian;
     context.fail(quoted(name) + " is no format of PLY", text.place());
+}
+
+// By habit, not by the format: what texture numbers count.
+void add_texture(LoadContext& context, TextCursor& text, PlyHeader& header) {
+    if (header.texture_files.size() == kMaxTextures) context.fail("more than 1024 textures", text.place());
+    std::string name(text.rest().substr(0, 4096));
+    std::replace(name.begin(), name.end(), '\\', '/');
+    if (!name.empty()) header.texture_files.push_back(std::move(name));
 }
 
 // Before anything is allocated: even the shortest elements must fit into the rest of the file.
@@ -137,7 +145,9 @@ PlyHeader read_ply_header(LoadContext& context, std::string_view file) {
             header.lines = text.line();
             check_room(context, header, file.size() - header.size);
             return header;
-        } else if (keyword != "comment" && keyword != "obj_info" && !keyword.empty()) {
+        } else if (keyword == "comment") {
+            if (text.word() == "TextureFile") add_texture(context, text, header);
+        } else if (keyword != "obj_info" && !keyword.empty()) {
             context.warn(text.place() + ": " + quoted(keyword) + " is no line of a PLY header; ignored");
         }
     }

@@ -38,8 +38,9 @@ struct PlyElement {
 struct PlyHeader {
     PlyEncoding encoding;
     std::vector<PlyElement> elements;
-    std::size_t size;   // bytes; the data follow
-    std::size_t lines;  // of the header
+    std::vector<std::string> texture_files;  // of "comment TextureFile", with forward slashes
+    std::size_t size;                        // bytes; the data follow
+    std::size_t lines;                       // of the header
 };
 
 // Throws kInput for a damaged header, and for elements that the rest of the file cannot hold.

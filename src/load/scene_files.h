@@ -30,4 +30,8 @@ class FolderFiles : public SceneFiles {
     std::string folder_;
 };
 
+// The whole file that a mesh format names, with forward slashes: where its name says or, as names often begin with
+// folders of the machine that wrote them, beside the scene.
+Bytes read_beside(LoadContext& context, const SceneFiles& files, const std::string& name, const std::string& place);
+
 }  // namespace tessera

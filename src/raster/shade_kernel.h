@@ -49,7 +49,8 @@ struct Stages {
 
     explicit Stages(const ShadeConstants& constants) {
         using enum ShadingFamily;
-        int uv_sets = 0;  // that the material may name
+        // That the material may name; what it mirrors is read by the code for all of them.
+        int uv_sets = has_specular_texture(constants.material) ? kMaxUvSets : 0;
         for (const TextureInput& in : constants.material.inputs)
             if (in.texture && in.uv_set >= uv_sets) uv_sets = in.uv_set + 1;
         const ShadingFamily family = family_of(constants.material.model);

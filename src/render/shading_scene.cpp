@@ -14,7 +14,9 @@
 namespace tessera {
 namespace {
 
-bool is_srgb(TextureSlot slot) { return slot == TextureSlot::kBaseColor || slot == TextureSlot::kEmissive; }
+bool is_srgb(TextureSlot slot) {
+    return slot == TextureSlot::kBaseColor || slot == TextureSlot::kEmissive || slot == TextureSlot::kSpecularColor;
+}
 
 void copy3(const Vec3& v, float scale, float* out) {
     out[0] = v.x * scale;
@@ -33,15 +35,18 @@ MaterialView convert(const Material& m) {
         m.model == ShadingModel::kLambert || m.model == ShadingModel::kPhong || m.model == ShadingModel::kBlinnPhong;
     const Vec4 base = textbook ? Vec4{1, 1, 1, m.base_color.w} : m.base_color;
     v.base_color[0] = base.x, v.base_color[1] = base.y, v.base_color[2] = base.z, v.base_color[3] = base.w;
-    v.metallic = m.metallic;
+    // Specular-glossiness is a dielectric of infinite index.
+    const bool glossiness = m.model == ShadingModel::kSpecularGlossiness, mirror = glossiness || m.ior == 0;
+    v.metallic = glossiness ? 0 : m.metallic;
     v.roughness = m.roughness;
-    const double root = m.ior == 0 ? 1.0 : (static_cast<double>(m.ior) - 1) / (static_cast<double>(m.ior) + 1);
+    v.dielectric_edge = glossiness ? 1 : m.specular_strength;
+    const double root = mirror ? 1.0 : (static_cast<double>(m.ior) - 1) / (static_cast<double>(m.ior) + 1);
     const Vec3& tint = m.specular_color;
     for (int i = 0; i < 3; ++i) {
         const double colored = root * root * static_cast<double>(i == 0 ? tint.x : i == 1 ? tint.y : tint.z);
-        v.dielectric[i] = static_cast<float>(std::min(colored, 1.0)) * m.specular_strength;
+        v.reflectance[i] = static_cast<float>(colored);
+        v.dielectric[i] = static_cast<float>(std::min(colored, 1.0)) * v.dielectric_edge;
     }
-    v.dielectric_edge = m.specular_strength;
     v.normal_scale = m.normal_scale;
     v.occlusion_strength = m.occlusion_strength;
     copy3(m.emissive, m.emissive_strength, v.emission);
@@ -62,6 +67,21 @@ MaterialView without_lighting(const MaterialView& lit) {
     if (family_of(lit.model) == ShadingFamily::kTextbook)
         for (int i = 0; i < 3; ++i) v.base_color[i] = lit.diffuse[i];
     return v;
+}
+
+// Whether shading reads the slot at all: in specular-glossiness two inputs stand for each other.
+bool is_read(const Material& m, std::size_t slot) {
+    return m.model != ShadingModel::kSpecularGlossiness ||
+           (slot != static_cast<std::size_t>(TextureSlot::kMetallicRoughness) &&
+            slot != static_cast<std::size_t>(TextureSlot::kSpecular));
+}
+
+// The diffuse part of specular-glossiness lacks what is mirrored. Where a texture says what that is, shading knows
+// it sample by sample (read_reflectance), else it is the same everywhere.
+void take_mirrored_light_away(MaterialView& m) {
+    if (m.model != ShadingModel::kSpecularGlossiness || has_specular_texture(m)) return;
+    const float left = 1 - std::max({m.dielectric[0], m.dielectric[1], m.dielectric[2]});
+    for (int i = 0; i < 3; ++i) m.base_color[i] *= left;
 }
 
 std::vector<bool> materials_of(const Scene& scene, const Frame& frame) {
@@ -88,7 +108,7 @@ ShadingScene::ShadingScene(const Scene& scene, const std::vector<bool>& used_vie
         if (!used[m]) continue;
         for (std::size_t slot = 0; slot < kTextureSlots; ++slot) {
             const TextureRef& ref = scene.materials[m].textures[slot];
-            if (ref.texture == kNone) continue;
+            if (ref.texture == kNone || !is_read(scene.materials[m], slot)) continue;
             const Texture& texture = scene.textures[static_cast<std::size_t>(ref.texture)];
             const Image* pixels = texture.picture == kNone
                                       ? nullptr
@@ -120,6 +140,7 @@ ShadingScene::ShadingScene(const Scene& scene, const std::vector<bool>& used_vie
             const TextureRef& ref = scene.materials[m].textures[slot];
             const auto view = view_of.find({ref.texture, is_srgb(static_cast<TextureSlot>(slot))});
             if (!used[m] || view == view_of.end() || ref.uv_set < 0 || ref.uv_set >= kMaxUvSets) continue;
+            if (!is_read(scene.materials[m], slot)) continue;
             TextureInput& input = materials_[m].inputs[slot];
             input.texture = &textures_[view->second];
             input.uv_set = ref.uv_set;
@@ -131,6 +152,7 @@ ShadingScene::ShadingScene(const Scene& scene, const std::vector<bool>& used_vie
     MaterialView ink = materials_.back();
     for (int i = 0; i < 3; ++i) ink.base_color[i] = kInk;
     materials_.push_back(ink);
+    for (MaterialView& m : materials_) take_mirrored_light_away(m);
 }
 
 ShadingScene::ShadingScene(const Scene& scene, const Frame& frame, const RenderOptions& options, Arena& arena,

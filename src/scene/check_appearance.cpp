@@ -1,6 +1,8 @@
 // Cameras, lights, materials, textures and pictures.
 #include "scene/check.h"
 
+#include <limits>
+
 namespace tessera {
 namespace {
 
@@ -34,6 +36,68 @@ void check_light(const Light& light, const Place& place) {
         place.child("outer_cone").fail("cones must satisfy 0 <= inner <= outer <= pi/2");
 }
 
+void check_texture(const Scene& scene, const TextureRef& ref, const Place& place) {
+    place.reference(ref.texture, scene.textures.size(), "texture");
+    if (ref.uv_set < 0) place.child("uv_set").fail("must not be negative");
+    const float transform[] = {ref.offset.x, ref.offset.y, ref.scale.x, ref.scale.y, ref.rotation};
+    place.finite(transform, std::size(transform));
+}
+
+// The layers and the inside of a material, whose numbers have the ranges of glTF's extensions.
+void check_extensions(const Scene& scene, const Material& m, const Place& place) {
+    constexpr float kAny = std::numeric_limits<float>::max();
+    const struct {
+        const char *part, *name;
+        float value, least, most;
+    } numbers[] = {
+        {"clearcoat", "strength", m.clearcoat.strength, 0, 1},
+        {"clearcoat", "roughness", m.clearcoat.roughness, 0, 1},
+        {"clearcoat", "normal_scale", m.clearcoat.normal_scale, -kAny, kAny},
+        {"sheen", "color", m.sheen.color.x, 0, 1},
+        {"sheen", "color", m.sheen.color.y, 0, 1},
+        {"sheen", "color", m.sheen.color.z, 0, 1},
+        {"sheen", "roughness", m.sheen.roughness, 0, 1},
+        {"transmission", "strength", m.transmission.strength, 0, 1},
+        {"volume", "thickness", m.volume.thickness, 0, kAny},
+        {"volume", "attenuation_color", m.volume.attenuation_color.x, 0, 1},
+        {"volume", "attenuation_color", m.volume.attenuation_color.y, 0, 1},
+        {"volume", "attenuation_color", m.volume.attenuation_color.z, 0, 1},
+        {"anisotropy", "strength", m.anisotropy.strength, 0, 1},
+        {"anisotropy", "rotation", m.anisotropy.rotation, -kAny, kAny},
+        {"iridescence", "strength", m.iridescence.strength, 0, 1},
+        {"iridescence", "ior", m.iridescence.ior, 1, kAny},
+        {"iridescence", "thickness_at_black", m.iridescence.thickness_at_black, 0, kAny},
+        {"iridescence", "thickness_at_white", m.iridescence.thickness_at_white, 0, kAny},
+        {"dispersion", {}, m.dispersion, 0, kAny},
+    };
+    for (const auto& n : numbers) {
+        if (n.value >= n.least && n.value <= n.most) continue;
+        const Place part = place.child(n.part);
+        (n.name ? part.child(n.name) : part).fail("is out of range");
+    }
+    if (const auto& distance = m.volume.attenuation_distance; distance && !(*distance > 0 && *distance <= kAny))
+        place.child("volume").child("attenuation_distance").fail("must be above 0");
+    const struct {
+        const char *part, *name;
+        const TextureRef& ref;
+    } textures[] = {
+        {"clearcoat", "strength_texture", m.clearcoat.strength_texture},
+        {"clearcoat", "roughness_texture", m.clearcoat.roughness_texture},
+        {"clearcoat", "normal_texture", m.clearcoat.normal_texture},
+        {"sheen", "color_texture", m.sheen.color_texture},
+        {"sheen", "roughness_texture", m.sheen.roughness_texture},
+        {"transmission", "texture", m.transmission.texture},
+        {"volume", "thickness_texture", m.volume.thickness_texture},
+        {"anisotropy", "texture", m.anisotropy.texture},
+        {"iridescence", "texture", m.iridescence.texture},
+        {"iridescence", "thickness_texture", m.iridescence.thickness_texture},
+    };
+    for (const auto& t : textures) {
+        const Place part = place.child(t.part);
+        check_texture(scene, t.ref, part.child(t.name));
+    }
+}
+
 void check_material(const Scene& scene, const Material& m, const Place& place) {
     const float values[] = {
         m.base_color.x,      m.base_color.y,     m.base_color.z,       m.base_color.w,      m.metallic,     m.roughness,
@@ -42,14 +106,8 @@ void check_material(const Scene& scene, const Material& m, const Place& place) {
         m.specular.x,        m.specular.y,       m.specular.z,         m.shininess,         m.alpha_cutoff, m.ior,
         m.specular_strength, m.specular_color.x, m.specular_color.y,   m.specular_color.z};
     place.finite(values, std::size(values));
-    for (std::size_t s = 0; s < kTextureSlots; ++s) {
-        const TextureRef& ref = m.textures[s];
-        const Place slot = place.child("textures", s);
-        slot.reference(ref.texture, scene.textures.size(), "texture");
-        if (ref.uv_set < 0) slot.child("uv_set").fail("must not be negative");
-        const float transform[] = {ref.offset.x, ref.offset.y, ref.scale.x, ref.scale.y, ref.rotation};
-        slot.finite(transform, std::size(transform));
-    }
+    for (std::size_t s = 0; s < kTextureSlots; ++s) check_texture(scene, m.textures[s], place.child("textures", s));
+    check_extensions(scene, m, place);
 }
 
 }  // namespace

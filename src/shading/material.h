@@ -25,8 +25,9 @@ struct MaterialView {
     float base_color[4];
     float metallic, roughness, normal_scale, occlusion_strength;
     float dielectric[3] = {0.04f, 0.04f, 0.04f}, dielectric_edge = 1;  // reflectance of no metal, ahead and grazing
-    float emission[3];                                                 // strength included
-    float ambient[3], diffuse[3], specular[3];                         // ka, kd, ks
+    float reflectance[3] = {0.04f, 0.04f, 0.04f};  // ahead, before the strength and the limit of 1: for textures
+    float emission[3];                             // strength included
+    float ambient[3], diffuse[3], specular[3];     // ka, kd, ks
     float shininess;
     TextureInput inputs[kTextureSlots];
 
@@ -55,6 +56,14 @@ TESSERA_INLINE Vec4T<F> read_input(const MaterialView& m, TextureSlot slot, cons
              d.uy * F(r[3]) + d.vy * F(r[4])};
     }
     return sample_texture(*in.texture, uv.x, uv.y, d);
+}
+
+// Few materials have textures of what they mirror. Only the code for all sets of texture coordinates reads them,
+// so that the others pay nothing.
+template <int kUvSets>
+inline constexpr bool kReadsSpecular = kUvSets == kMaxUvSets;
+TESSERA_INLINE bool has_specular_texture(const MaterialView& m) {
+    return m.input(TextureSlot::kSpecular).texture || m.input(TextureSlot::kSpecularColor).texture;
 }
 
 // Colour and alpha of the surface itself: texture and vertex colour.
@@ -106,6 +115,25 @@ struct LobeParameters {
     F alpha, metallic, roughness, occlusion;
 };
 
+// What is mirrored, where textures say so. KHR_materials_specular: the colour and the strength of a dielectric.
+// KHR_materials_pbrSpecularGlossiness: the reflectance, which the diffuse part lacks, and the glossiness.
+template <int kUvSets, class F>
+TESSERA_INLINE void read_reflectance(const MaterialView& m, const SurfacePoint<F>& s, LobeParameters<F>& p) {
+    const F one(1.0f);
+    const Vec4T<F> color = read_input<kUvSets>(m, TextureSlot::kSpecularColor, s);
+    const Vec3T<F> ahead{min(F(m.reflectance[0]) * color.x, one), min(F(m.reflectance[1]) * color.y, one),
+                         min(F(m.reflectance[2]) * color.z, one)};
+    if (m.model == ShadingModel::kSpecularGlossiness) {
+        p.base = p.base * (one - max(max(ahead.x, ahead.y), ahead.z));
+        p.roughness = saturate(one - (one - F(m.roughness)) * color.w);
+        p.f0 = ahead;
+        return;
+    }
+    const F strength = F(m.dielectric_edge) * read_input<kUvSets>(m, TextureSlot::kSpecular, s).w;
+    p.f0 = mix(ahead * strength, p.base, p.metallic);
+    p.f90 = strength + (one - strength) * p.metallic;
+}
+
 template <int kUvSets = kMaxUvSets, class F>
 TESSERA_INLINE LobeParameters<F> evaluate_material(const MaterialView& m, const SurfacePoint<F>& s) {
     LobeParameters<F> p;
@@ -120,6 +148,7 @@ TESSERA_INLINE LobeParameters<F> evaluate_material(const MaterialView& m, const 
     p.roughness = saturate(F(m.roughness) * mr.y);
     p.f0 = mix(Vec3T<F>::load(m.dielectric), p.base, p.metallic);
     p.f90 = F(m.dielectric_edge) + (F(1.0f) - F(m.dielectric_edge)) * p.metallic;
+    if (kReadsSpecular<kUvSets> && has_specular_texture(m)) read_reflectance<kUvSets>(m, s, p);
     p.emission = Vec3T<F>::load(m.emission) * read_input<kUvSets>(m, TextureSlot::kEmissive, s).xyz();
     p.occlusion = kUvSets > 0 ? occlusion<kUvSets>(m, s) : F(1.0f);
     return p;

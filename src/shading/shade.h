@@ -33,6 +33,7 @@ TESSERA_INLINE ShadingFamily family_of(ShadingModel model) {
         case ShadingModel::kBlinnPhong:
             return ShadingFamily::kTextbook;
         case ShadingModel::kMetallicRoughness:
+        case ShadingModel::kSpecularGlossiness:
             break;
     }
     return ShadingFamily::kMicrofacet;
@@ -60,14 +61,15 @@ TESSERA_INLINE Vec3T<F> product(const float (&a)[3], const float (&b)[3], float 
 }
 
 // I = ke + Ia ka + sum over lights of kd I_l (l.n) + ks I_l (highlight). Texture and vertex colour
-// modulate ka and kd. In short loops over the batch, so that the square roots and divisions of its
-// vectors overlap. `visible(light, sample, point)` as below.
+// modulate ka and kd, textures of their own ks and ns. In short loops over the batch, so that the square
+// roots and divisions of its vectors overlap. `visible(light, sample, point)` as below.
 template <int kUvSets, class F, class Batch, class Visible>
 TESSERA_INLINE void shade_textbook(const ShadingContext& context, const MaterialView& m, const Batch& batch,
                                    Visible&& visible, ShadedPoint<F>* out) {
     constexpr int kCount = Batch::kCount;
     constexpr bool kColored = kUvSets > 0 || Batch::kColored;
     const Exponent exponent(m.shininess);
+    const bool highlights_vary = kReadsSpecular<kUvSets> && has_specular_texture(m);
     Vec3T<F> color[kCount];
     for (int k = 0; k < kCount; ++k) {
         if (!batch.used(k)) continue;
@@ -114,8 +116,20 @@ TESSERA_INLINE void shade_textbook(const ShadingContext& context, const Material
             if constexpr (kColored) diffuse = diffuse * color[k];
             Vec3T<F> sum = out[k].radiance + diffuse;
             if (m.model != ShadingModel::kLambert) {
-                const F power = power_cosine(cosine(m.model, highlight[k]), exponent);
-                sum = sum + ks * (select(n_l[k] > zero, power, zero) * strength[k]);
+                const F base = cosine(m.model, highlight[k]);
+                Vec3T<F> mirrored = ks;
+                F power;
+                if (highlights_vary) {
+                    // Anew for every light, which keeps memory of it out of the loops that most materials take.
+                    const SurfacePoint<F> point = batch.point(k);
+                    mirrored = ks * read_input<kUvSets>(m, TextureSlot::kSpecularColor, point).xyz();
+                    const F scale = read_input<kUvSets>(m, TextureSlot::kSpecular, point).w;
+                    power = m.input(TextureSlot::kSpecular).texture ? math::pow(max(base, zero), F(m.shininess) * scale)
+                                                                    : power_cosine(base, exponent);
+                } else {
+                    power = power_cosine(base, exponent);
+                }
+                sum = sum + mirrored * (select(n_l[k] > zero, power, zero) * strength[k]);
             }
             out[k].radiance = sum;
         }

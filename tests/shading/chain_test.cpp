@@ -167,8 +167,9 @@ class ChainTest : public testing::TestWithParam<Isa> {
     World world_;
 };
 
-constexpr ShadingModel kModels[] = {ShadingModel::kMetallicRoughness, ShadingModel::kUnlit, ShadingModel::kLambert,
-                                    ShadingModel::kPhong, ShadingModel::kBlinnPhong};
+constexpr ShadingModel kModels[] = {ShadingModel::kMetallicRoughness, ShadingModel::kUnlit,
+                                    ShadingModel::kLambert,           ShadingModel::kPhong,
+                                    ShadingModel::kBlinnPhong,        ShadingModel::kSpecularGlossiness};
 constexpr Wrap kWraps[] = {Wrap::kRepeat, Wrap::kMirror, Wrap::kClamp};
 constexpr MipFilter kMips[] = {MipFilter::kNone, MipFilter::kNearest, MipFilter::kLinear};
 
@@ -191,7 +192,8 @@ MaterialView textured(ShadingModel model, std::vector<std::unique_ptr<test::Test
 
 std::vector<std::unique_ptr<test::TestTexture>> make_textures() {
     std::vector<std::unique_ptr<test::TestTexture>> textures;
-    constexpr int kSizes[kTextureSlots][3] = {{64, 32, 7}, {1, 1, 1}, {37, 5, 6}, {16, 16, 5}, {128, 1, 8}};
+    constexpr int kSizes[kTextureSlots][3] = {{64, 32, 7}, {1, 1, 1},   {37, 5, 6}, {16, 16, 5},
+                                              {128, 1, 8}, {32, 64, 7}, {9, 9, 4}};
     for (std::size_t i = 0; i < kTextureSlots; ++i)
         textures.push_back(std::make_unique<test::TestTexture>(kSizes[i][0], kSizes[i][1], kSizes[i][2],
                                                                static_cast<std::uint32_t>(i + 1)));
