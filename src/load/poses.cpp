@@ -181,7 +181,8 @@ std::vector<Pose> read_poses(const std::string& path, int width, int height) {
     options.max_bytes = kMostBytes;
     LoadContext context(path, options);
     const Bytes file = read_whole_file(context, path);
-    return parse_poses({reinterpret_cast<const char*>(file.data()), file.size()}, width, height, path);
+    const std::span<const std::byte> bytes = file.span();
+    return parse_poses({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, width, height, path);
 }
 
 }  // namespace tessera
