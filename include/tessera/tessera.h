@@ -6,8 +6,8 @@
 #include <tessera/image.h>
 #include <tessera/image_files.h>
 #include <tessera/load.h>
-#include <tessera/poses.h>
 #include <tessera/planes.h>
+#include <tessera/poses.h>
 #include <tessera/render.h>
 #include <tessera/renderer.h>
 #include <tessera/scene.h>
