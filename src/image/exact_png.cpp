@@ -25,7 +25,8 @@ std::span<const std::uint32_t> numbers(const Image& plane) {
     return {plane.data<std::uint32_t>(), plane.bytes().size() / sizeof(std::uint32_t)};
 }
 
-std::vector<std::byte> write_grey(const Image& plane, const std::vector<std::uint16_t>& values, int level) {
+std::vector<std::byte> write_grey(const Image& plane, const std::vector<std::uint16_t>& values,
+                                  const PngOptions& options) {
     PngRows rows;
     rows.width = plane.width(), rows.height = plane.height();
     rows.bits = 16;
@@ -37,8 +38,8 @@ std::vector<std::byte> write_grey(const Image& plane, const std::vector<std::uin
             *out++ = static_cast<std::uint8_t>(v >> 8), *out++ = static_cast<std::uint8_t>(v & 0xff);
         }
     };
-    Arena arena;
-    return write_png(rows, level, arena);
+    Arena arena(options.threads);
+    return write_png(rows, options.level, arena);
 }
 
 // The shortest decimal that tells the number.
@@ -64,7 +65,7 @@ std::vector<std::byte> encode_grey_png(const Image& plane, const PngOptions& opt
         throw Error(ErrorCode::kLimit, "the largest value, " + std::to_string(largest) + ", does not fit 16 bits");
     std::vector<std::uint16_t> grey(values.size());
     std::transform(values.begin(), values.end(), grey.begin(), [](auto v) { return static_cast<std::uint16_t>(v); });
-    return write_grey(plane, grey, options.level);
+    return write_grey(plane, grey, options);
 }
 
 std::vector<std::byte> encode_depth_png(const Image& depth, double scale, const PngOptions& options) {
@@ -87,7 +88,7 @@ std::vector<std::byte> encode_depth_png(const Image& depth, double scale, const 
     if (farthest * scale >= kLargestGrey + 0.5)
         throw Error(ErrorCode::kLimit, "the largest depth, " + shown(farthest) + " m, does not fit 16 bits at " +
                                            shown(scale) + " per metre");
-    return write_grey(depth, grey, options.level);
+    return write_grey(depth, grey, options);
 }
 
 std::vector<std::byte> encode_id_png(const Image& ids, const PngOptions& options) {
@@ -103,7 +104,7 @@ std::vector<std::byte> encode_id_png(const Image& ids, const PngOptions& options
         for (const std::uint32_t id : values.subspan(y * width, width))
             for (int shift = 0; shift < (wide ? 32 : 24); shift += 8) *out++ = static_cast<std::uint8_t>(id >> shift);
     };
-    Arena arena;
+    Arena arena(options.threads);
     return write_png(rows, options.level, arena);
 }
 

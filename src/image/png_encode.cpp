@@ -96,7 +96,7 @@ std::vector<std::byte> encode_png(const IndexedImage& image, const PngOptions& o
             *out++ = static_cast<std::uint8_t>(byte);
         }
     };
-    Arena arena;
+    Arena arena(options.threads);
     return write_png(rows, options.level, arena);
 }
 

@@ -81,6 +81,8 @@ TEST(Npy, ImagesComeWithTheirChannels) {
     EXPECT_EQ(shape_of(PixelFormat::kRgba8), std::tuple(3, 2, 4, NpyType::kU1));
     EXPECT_EQ(shape_of(PixelFormat::kRgba16), std::tuple(3, 2, 4, NpyType::kU2));
     EXPECT_EQ(shape_of(PixelFormat::kRgba32f), std::tuple(3, 2, 4, NpyType::kF4));
+    EXPECT_EQ(shape_of(PixelFormat::kRg32f), std::tuple(3, 2, 2, NpyType::kF4));
+    EXPECT_EQ(shape_of(PixelFormat::kRgb32f), std::tuple(3, 2, 3, NpyType::kF4));
     EXPECT_EQ(shape_of(PixelFormat::kF32), std::tuple(3, 2, 1, NpyType::kF4));
     EXPECT_EQ(shape_of(PixelFormat::kU32), std::tuple(3, 2, 1, NpyType::kU4));
 }
