@@ -64,7 +64,7 @@ struct Sheen {  // the fibres of cloth
     TextureRef color_texture, roughness_texture;  // sRGB, alpha
     friend bool operator==(const Sheen&, const Sheen&) = default;
 };
-struct Transmission {  // what enters the surface instead of the diffuse part
+struct Transmission {  // what passes through the surface instead of the diffuse part, coloured by base_color
     float strength = 0;
     TextureRef texture;  // red
     friend bool operator==(const Transmission&, const Transmission&) = default;

@@ -77,6 +77,41 @@ TEST_F(Cli, InfoShowsPicturesAndExtensions) {
         EXPECT_NE(std::find(models.begin(), models.end(), model), models.end()) << model;
 }
 
+TEST_F(Cli, InfoShowsTheLayersOfMaterials) {
+    std::ofstream(in_folder("m.gltf"))
+        << R"({"asset":{"version":"2.0"},"images":[{"uri":"data:,"}],"textures":[{"source":0}],"materials":[{"extensions":{)"
+        << R"("KHR_materials_transmission":{"transmissionFactor":0.75,"transmissionTexture":{"index":0}},)"
+        << R"("KHR_materials_volume":{"thicknessFactor":0.25,"attenuationDistance":2,"attenuationColor":[1,0.5,0]},)"
+        << R"("KHR_materials_ior":{"ior":1.25},"KHR_materials_clearcoat":{"clearcoatFactor":1},)"
+        << R"("KHR_materials_sheen":{"sheenRoughnessFactor":0.5},"KHR_materials_anisotropy":{"anisotropyRotation":1},)"
+        << R"("KHR_materials_iridescence":{"iridescenceFactor":0.5},"KHR_materials_dispersion":{"dispersion":0.5}}},{}]})";
+    const Outcome run = run_command({"info", in_folder("m.gltf"), "--json"});
+    ASSERT_EQ(run.code, 0) << run.err;
+    simdjson::dom::parser parser;
+    const simdjson::dom::element json = parser.parse(run.out), m = json["materials"].at(0);
+    EXPECT_EQ(double(m["ior"]), 1.25);
+    EXPECT_EQ(double(m["transmission"]["strength"]), 0.75);
+    EXPECT_EQ(std::uint64_t(m["transmission"]["texture"]), 0u);
+    EXPECT_EQ(double(m["volume"]["thickness_m"]), 0.25);
+    EXPECT_EQ(double(m["volume"]["attenuation_distance_m"]), 2);
+    EXPECT_EQ(double(m["volume"]["attenuation_color"].at(1)), 0.5);
+    EXPECT_EQ(double(m["clearcoat"]["strength"]), 1);
+    EXPECT_EQ(double(m["sheen"]["roughness"]), 0.5);
+    EXPECT_EQ(double(m["anisotropy"]["rotation_rad"]), 1);
+    EXPECT_EQ(double(m["iridescence"]["thickness_at_white_nm"]), 400);
+    EXPECT_EQ(double(m["dispersion"]), 0.5);
+    EXPECT_EQ(simdjson::dom::array(json["warnings"]).size(), 7u) << "one for each that is not drawn: " << run.out;
+    // What a material does not have is not there.
+    for (const char* key : {"clearcoat", "sheen", "transmission", "volume", "anisotropy", "iridescence", "dispersion"})
+        EXPECT_NE(json["materials"].at(1)[key].error(), simdjson::SUCCESS) << key;
+    const Outcome text = run_command({"info", in_folder("m.gltf")});
+    EXPECT_NE(
+        text.out.find("ior 1.25, clearcoat 1, sheen roughness 0.5, transmission 0.75, volume 0.25 m, anisotropy 0, "
+                      "iridescence 0.5, dispersion 0.5"),
+        std::string::npos)
+        << text.out;
+}
+
 class CliDiff : public CliTest {
   protected:
     void SetUp() override {

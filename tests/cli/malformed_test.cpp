@@ -1,6 +1,6 @@
-// Hostile files through the command: each glTF, GLB and picture of the corpus gives what its
-// manifest says, within 5 s and 1 GiB, without a signal, with one line that names the file, and
-// leaves nothing behind.
+// Hostile files through the command: each scene and picture of the corpus gives what its manifest
+// says (formats that are not read are errors), within 5 s and 1 GiB, without a signal, with one line that names the
+// file, and leaves nothing behind.
 #include "cli/run_command.h"
 
 #include <sstream>
@@ -33,10 +33,6 @@ std::vector<Case> cases() {
         if (one.expected == "error" || one.expected == "clean" || one.expected == "error-or-clean") list.push_back(one);
     }
     return list;
-}
-
-bool ends_with(const std::string& text, const std::string& tail) {
-    return text.size() >= tail.size() && text.compare(text.size() - tail.size(), tail.size(), tail) == 0;
 }
 
 class CliMalformed : public CliTest {
@@ -77,14 +73,14 @@ class CliMalformed : public CliTest {
 TEST_F(CliMalformed, Scenes) {
     int count = 0;
     for (const Case& one : cases()) {
-        if (!ends_with(one.file, ".gltf") && !ends_with(one.file, ".glb")) continue;
+        if (one.file.rfind("image/", 0) == 0) continue;
         ++count;
         const Outcome run = run_command(
             {"render", (corpus() / one.file).string(), "-o", in_folder("a.png"), "-s", "64x64"}, "", {}, 2 * kSeconds);
         check(one, run);
         std::filesystem::remove(in_folder("a.png"));
     }
-    EXPECT_GT(count, 50);
+    EXPECT_GT(count, 250);
 }
 
 TEST_F(CliMalformed, Pictures) {

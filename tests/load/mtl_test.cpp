@@ -158,6 +158,45 @@ TEST_F(MtlFiles, RoughnessAndMetalShareATexture) {
     EXPECT_EQ(picture.pixels->data<std::uint8_t>()[2], 40);
 }
 
+// map_Ks is a colour, map_Ns a number that the shininess is multiplied by.
+TEST_F(MtlFiles, HighlightsHaveMaps) {
+    write("ks.png", image(1, 1, {10, 20, 30, 77}));
+    write("ns.png", image(1, 1, {200, 100, 50, 255}));
+    const auto texel = [](const Scene& scene, TextureSlot slot) -> const std::uint8_t* {
+        const int texture = material(scene).texture(slot).texture;
+        if (texture == kNone) return nullptr;
+        const int picture = scene.textures.at(static_cast<std::size_t>(texture)).picture;
+        return scene.pictures.at(static_cast<std::size_t>(picture)).pixels->data<std::uint8_t>();
+    };
+    const Scene scene = load("newmtl m\nKs 1 0.5 0.25\nNs 50\nmap_Ks -s 2 2 ks.png\nmap_Ns -imfchan r ns.png\n");
+    EXPECT_TRUE(scene.warnings.empty()) << scene.warnings[0];
+    EXPECT_EQ(material(scene).specular, (Vec3{1, 0.5f, 0.25f}));
+    EXPECT_EQ(material(scene).shininess, 50);
+    EXPECT_EQ(material(scene).texture(TextureSlot::kSpecularColor).scale, (Vec2{2, 2}));
+    ASSERT_NE(texel(scene, TextureSlot::kSpecularColor), nullptr);
+    EXPECT_EQ(texel(scene, TextureSlot::kSpecularColor)[1], 20);
+    ASSERT_NE(texel(scene, TextureSlot::kSpecular), nullptr);
+    EXPECT_EQ(texel(scene, TextureSlot::kSpecular)[3], 200);
+    // Not where there is no highlight of Phong.
+    for (const char* other : {"illum 1\n", "illum 0\n", "Pm 1\n"})
+        EXPECT_EQ(texel(load(std::string("newmtl m\nmap_Ks ks.png\n") + other), TextureSlot::kSpecularColor), nullptr);
+}
+
+// 4, 6, 7 and 9 are the illumination models of glass (5 and 8 reflect, 3 and below do neither).
+TEST_F(MtlFiles, GlassIsTransmission) {
+    for (int illum = 0; illum <= 10; ++illum) {
+        const Scene scene = load("newmtl m\nKd 1 1 1\nTf 0.25 0.5 0\nNi 1.33\nillum " + std::to_string(illum) + "\n");
+        const Material& m = material(scene);
+        const bool glass = illum == 4 || illum == 6 || illum == 7 || illum == 9;
+        EXPECT_EQ(m.transmission.strength, glass ? 0.5f : 0.0f) << illum;
+        EXPECT_EQ(m.ior, glass ? 1.33f : 1.5f) << illum;
+        EXPECT_EQ(m.base_color, (glass ? Vec4{0.5f, 1, 0, 1} : Vec4{1, 1, 1, 1})) << illum;
+        EXPECT_EQ(scene.warnings.size(), glass ? 1u : 0u) << illum;
+    }
+    EXPECT_EQ(material(load("newmtl m\nillum 7\n")).transmission.strength, 1);
+    EXPECT_EQ(material(load("newmtl m\nTf 0 0 0\nillum 7\nNi 0.5\n")).transmission.strength, 0);
+}
+
 TEST_F(MtlFiles, LibrariesMayHaveBlanksOrBeSeveral) {
     write("a.mtl", "newmtl a\nKd 1 0 0\n");
     write("b.mtl", "newmtl b\nKd 0 1 0\n");

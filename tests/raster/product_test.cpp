@@ -118,5 +118,44 @@ TEST(ExactnessProduct, BEY1_RAS2_MeshesAndTrianglesAroundTheCamera) {
     run_product(subjects);
 }
 
+// Textures of what is mirrored, by every model that has them, with one and with two sets of texture coordinates.
+TEST(ExactnessProduct, BEY1_LIT4_TexturesOfWhatIsMirrored) {
+    Image noise(32, 32, PixelFormat::kRgba8);
+    std::uint32_t random = 7;
+    for (std::size_t i = 0; i < noise.bytes().size(); ++i) {
+        random = random * 1664525u + 1013904223u;
+        noise.data<std::uint8_t>()[i] = static_cast<std::uint8_t>(random >> 24);
+    }
+    std::vector<Subject> subjects;
+    for (const ShadingModel model : {ShadingModel::kMetallicRoughness, ShadingModel::kSpecularGlossiness,
+                                     ShadingModel::kPhong, ShadingModel::kBlinnPhong})
+        for (int textures = 1; textures < 4; ++textures) {
+            Subject s{"mirrors " + std::to_string(static_cast<int>(model)), {}, all_planes(160, 96, 1)};
+            s.scene.pictures.push_back({"noise", "", std::make_shared<const Image>(noise), ""});
+            s.scene.textures.push_back({"", 0, kNone, ""});
+            Material m;
+            m.model = model;
+            m.base_color = {0.7f, 0.4f, 0.3f, 1};
+            m.metallic = 0.25f, m.roughness = 0.3f;
+            m.specular_color = {0.9f, 0.8f, 0.7f};
+            m.specular = {0.6f, 0.5f, 0.4f};
+            m.shininess = 40;
+            if (textures & 1) m.texture(TextureSlot::kSpecularColor).texture = 0;
+            if (textures & 2)
+                m.texture(TextureSlot::kSpecular) = {0, textures == 3 ? 1 : 0, {0.1f, 0.2f}, {3, 2}, 0.4f};
+            Primitive ball = cli::sphere_mesh(24);
+            ball.material = add_material(s.scene, m);
+            ball.texcoords = {{}, {}};
+            for (const Vec3& p : ball.positions) {
+                ball.texcoords[0].push_back({2 * p.x, 2 * p.y});
+                ball.texcoords[1].push_back({p.y + p.z, p.x});
+            }
+            add_mesh(s.scene, std::move(ball));
+            s.options.view = look_from({0, 0, 2.2f}, {0, 0, 0});
+            subjects.push_back(std::move(s));
+        }
+    run_product(subjects);
+}
+
 }  // namespace
 }  // namespace tessera

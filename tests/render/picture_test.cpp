@@ -6,6 +6,7 @@
 #include "render/scenes.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <random>
 
@@ -303,6 +304,60 @@ TEST(Picture, LabelsAreTakenAtTheCentreAndNotFiltered) {
                 EXPECT_LE(id[5 * 16 + x], 2u);
             }
         }
+}
+
+// A picture of one colour is that colour as a factor: what textures multiply is what factors say, up to the 15 bits
+// of a texel. Specular-glossiness without a texture takes another way.
+TEST(Picture, LIT4_TexturesOfWhatIsMirroredAreFactors) {
+    Image grey(1, 1, PixelFormat::kRgba8);
+    std::uint8_t* t = grey.data<std::uint8_t>();
+    t[0] = 188, t[1] = 137, t[2] = 0, t[3] = 102;
+    const Vec3 color{0.50289f, 0.25016f, 0};  // of these codes (IEC 61966-2-1)
+    const float alpha = 102.0f / 255;
+    Light sun;
+    sun.type = Light::Type::kDirectional;
+    sun.intensity = 3;
+    for (const ShadingModel model : {ShadingModel::kMetallicRoughness, ShadingModel::kSpecularGlossiness,
+                                     ShadingModel::kPhong, ShadingModel::kBlinnPhong}) {
+        const auto picture = [&](bool textured) {
+            Scene scene;
+            scene.pictures.push_back({"grey", "", std::make_shared<const Image>(grey), ""});
+            scene.textures.push_back({"", 0, kNone, ""});
+            Material m;
+            m.model = model;
+            m.base_color = {0.8f, 0.7f, 0.6f, 1};
+            m.diffuse = {0.2f, 0.2f, 0.2f};
+            m.metallic = 0;
+            const bool glossy = model == ShadingModel::kSpecularGlossiness;
+            m.roughness = textured || !glossy ? 0.25f : 1 - 0.75f * alpha;
+            m.specular_color = m.specular = textured ? Vec3{1, 1, 1} : color;
+            m.specular_strength = textured || glossy ? 1 : alpha;
+            m.shininess = textured ? 20 : 20 * alpha;
+            if (textured) {
+                m.texture(TextureSlot::kSpecularColor).texture = 0;
+                if (!glossy) m.texture(TextureSlot::kSpecular).texture = 0;
+            }
+            add_mesh(scene, rectangle(1, 1, 0, add_material(scene, m)));
+            scene.lights.push_back(sun);
+            scene.nodes.emplace_back().light = 0;
+            scene.scenes[0].nodes.push_back(1);
+            RenderOptions o = small(16, 16);
+            o.view.eye = Vec3{0.2f, 0.3f, 2};
+            o.view.target = Vec3{0, 0, 0};
+            o.exposure_ev = 0.0f;
+            o.want_linear = true;
+            return render(scene, o);
+        };
+        const RenderResult a = picture(true), b = picture(false);
+        double most = 0, largest = 0;
+        for (std::size_t i = 0; i < 16 * 16 * 4; ++i) {
+            const double x = a.linear.data<float>()[i], y = b.linear.data<float>()[i];
+            most = std::max(most, std::abs(x - y) / (1 + std::abs(y)));
+            largest = std::max(largest, y);
+        }
+        EXPECT_LT(most, 5e-4) << static_cast<int>(model);
+        EXPECT_GT(largest, 0.02);
+    }
 }
 
 }  // namespace
