@@ -15,12 +15,18 @@ struct AovName {
     const char* name;
 };
 constexpr AovName kNames[] = {
-    {Aov::kColor, "color"},           {Aov::kAlpha, "alpha"},
-    {Aov::kDepth, "depth"},           {Aov::kNormal, "normal"},
-    {Aov::kUv, "uv"},                 {Aov::kPosition, "position"},
-    {Aov::kAlbedo, "albedo"},         {Aov::kNode, "node"},
-    {Aov::kMaterial, "material"},     {Aov::kPrimitive, "primitive"},
-    {Aov::kMotion, "motion"},         {Aov::kMotionSeen, "motion-seen"},
+    {Aov::kColor, "color"},
+    {Aov::kAlpha, "alpha"},
+    {Aov::kDepth, "depth"},
+    {Aov::kNormal, "normal"},
+    {Aov::kUv, "uv"},
+    {Aov::kPosition, "position"},
+    {Aov::kAlbedo, "albedo"},
+    {Aov::kNode, "node"},
+    {Aov::kMaterial, "material"},
+    {Aov::kPrimitive, "primitive"},
+    {Aov::kMotion, "motion"},
+    {Aov::kMotionSeen, "motion-seen"},
     {Aov::kShadingNormal, "shading-normal"},
 };
 
@@ -88,7 +94,8 @@ std::vector<PlaneFile> files_for(const std::vector<Aov>& aovs, const std::string
 ValueRange parse_range(const std::string& text) {
     const std::vector<std::string> parts = parts_of(text, ',');
     if (parts.size() != 2) refuse("--range", "'" + text + "' is not LOW,HIGH");
-    const ValueRange range{parse_number("--range", parts[0], -1e30, 1e30), parse_number("--range", parts[1], -1e30, 1e30)};
+    const ValueRange range{parse_number("--range", parts[0], -1e30, 1e30),
+                           parse_number("--range", parts[1], -1e30, 1e30)};
     if (!(range.low < range.high)) refuse("--range", "must rise");
     return range;
 }
@@ -123,7 +130,8 @@ PlaneOptions parse_planes(const PlaneTexts& texts, const std::string& output) {
             refuse("--colormap", "needs a plane of numbers, such as --aov depth");
     }
     if (!texts.range.empty()) {
-        if (!options.colormap || *options.colormap == Colormap::kIds) refuse("--range", "needs a --colormap of a range");
+        if (!options.colormap || *options.colormap == Colormap::kIds)
+            refuse("--range", "needs a --colormap of a range");
         options.range = parse_range(texts.range);
     }
     if (!texts.depth_scale.empty()) options.depth_scale = parse_number("--depth-scale", texts.depth_scale, 1e-6, 1e9);

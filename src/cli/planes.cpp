@@ -44,14 +44,17 @@ Image picture_of_normals(const Image& plane) {
 Image picture_of_uv(const Image& plane) {
     const float* uv = plane.data<float>();
     return picture16(plane, [uv](std::size_t i, std::uint16_t* out) {
-        for (int c = 0; c < 2; ++c) out[c] = code16(uv[2 * i + static_cast<std::size_t>(c)] - std::floor(uv[2 * i + static_cast<std::size_t>(c)]));
+        for (int c = 0; c < 2; ++c)
+            out[c] =
+                code16(uv[2 * i + static_cast<std::size_t>(c)] - std::floor(uv[2 * i + static_cast<std::size_t>(c)]));
         out[2] = 0;
     });
 }
 
 std::vector<std::byte> encode_alpha(const Image& plane, const PngOptions& png) {
     Image codes(plane.width(), plane.height(), PixelFormat::kU32);
-    for (std::size_t i = 0, n = pixels_of(plane); i < n; ++i) codes.data<std::uint32_t>()[i] = code16(plane.data<float>()[i]);
+    for (std::size_t i = 0, n = pixels_of(plane); i < n; ++i)
+        codes.data<std::uint32_t>()[i] = code16(plane.data<float>()[i]);
     return encode_grey_png(codes, png);
 }
 
@@ -92,7 +95,10 @@ std::vector<ChannelName> channels_of(Aov aov) {
     constexpr ChannelType kFloat = ChannelType::kFloat, kUint = ChannelType::kUint;
     switch (aov) {
         case Aov::kColor:
-            return {{"R", ChannelType::kHalf}, {"G", ChannelType::kHalf}, {"B", ChannelType::kHalf}, {"A", ChannelType::kHalf}};
+            return {{"R", ChannelType::kHalf},
+                    {"G", ChannelType::kHalf},
+                    {"B", ChannelType::kHalf},
+                    {"A", ChannelType::kHalf}};
         case Aov::kAlpha:
             return {{"alpha.A", kFloat}};
         case Aov::kDepth:

@@ -80,8 +80,10 @@ Codec parse_codec(const std::string& output, const PlaneTexts& planes) {
     if (!is_video(output)) {
         const std::string extension = extension_of(output);
         if (extension != "npy" && file_content(extension) == FileContent::kUnknown)
-            refuse("--output", "'" + output + "' does not end in .png, .jpg, .jpeg, .webp, .tif, .tiff, .exr, .hdr or "
-                                   ".npy, nor in " + video_endings());
+            refuse("--output", "'" + output +
+                                   "' does not end in .png, .jpg, .jpeg, .webp, .tif, .tiff, .exr, .hdr or "
+                                   ".npy, nor in " +
+                                   video_endings());
         return Codec::kPicture;
     }
     if (planes.aov != "color") refuse("--aov", "a video shows color");
@@ -136,8 +138,10 @@ void add_picture_options(CLI::App& app, RenderArguments& a) {
     option("Input and output", "--png-level", a.png_level, "0..12", "0 stores, 12 is smallest and slowest (default 1)");
     option("Input and output", "--color-bits", a.planes.color_bits, "R-G-B",
            "reduce to so many bits a channel, such as 3-3-2");
-    option("Input and output", "--palette", a.planes.palette, "N", "reduce to so many colours that fit, 2 .. 256 (PNG)");
-    app.add_flag("--dither", a.planes.dither, "with --palette: mix colours in fine patterns")->group("Input and output");
+    option("Input and output", "--palette", a.planes.palette, "N",
+           "reduce to so many colours that fit, 2 .. 256 (PNG)");
+    app.add_flag("--dither", a.planes.dither, "with --palette: mix colours in fine patterns")
+        ->group("Input and output");
     option("Planes", "--aov", a.planes.aov, "LIST",
            "planes to write, and only these are computed (default color): color, alpha, depth, normal, shading-normal, "
            "uv, position, albedo, node, material, primitive, motion, motion-seen. A file each, {aov} in the name tells "

@@ -53,7 +53,7 @@ struct RenderJob {
     double fps = 24;
     std::vector<Pose> poses;  // a picture from each, in place of the view
     Codec codec = Codec::kPicture;
-    PlaneOptions planes;  // what is written
+    PlaneOptions planes;                                                       // what is written
     std::optional<double> timeout;                                             // seconds
     std::uint64_t max_picture = std::uint64_t{kMaxImageSide} * kMaxImageSide;  // pixels
 };

@@ -98,7 +98,8 @@ std::vector<Pose> read_cameras(const Json& root, int width, int height) {
     root.at("cameras").each([&](const Json& camera, std::size_t i) {
         Pose pose;
         pose.name = camera.string_or("name", std::to_string(i));
-        const std::optional<Json> to_world = camera.find("camera_to_world"), from_world = camera.find("world_to_camera");
+        const std::optional<Json> to_world = camera.find("camera_to_world"),
+                                  from_world = camera.find("world_to_camera");
         if (to_world.has_value() == from_world.has_value())
             camera.fail("needs one of camera_to_world and world_to_camera");
         const Mat4 placement = to_world ? read_rigid(*to_world) : inverse(read_rigid(*from_world));
@@ -163,8 +164,7 @@ std::vector<Pose> parse_poses(std::string_view json, int width, int height, cons
         const Json root(element, {}, name);
         if (!root.is_object()) root.fail("expected an object with \"cameras\" or \"frames\"");
         const bool nerf = !root.find("cameras") && root.find("frames");
-        std::vector<Pose> poses =
-            nerf ? read_transforms(root, width, height) : read_cameras(root, width, height);
+        std::vector<Pose> poses = nerf ? read_transforms(root, width, height) : read_cameras(root, width, height);
         if (poses.empty()) root.fail("there is no camera in it");
         std::set<std::string> names;
         for (std::size_t i = 0; i < poses.size(); ++i)

@@ -28,7 +28,8 @@ TESSERA_INLINE SurfaceLayout label_layout(const MeshView& mesh, const MaterialVi
         l.count += numbers;
         return first;
     };
-    const bool bent = labels.shading_normal && mesh.normals && mesh.tangents && material.input(TextureSlot::kNormal).texture;
+    const bool bent =
+        labels.shading_normal && mesh.normals && mesh.tangents && material.input(TextureSlot::kNormal).texture;
     if ((labels.normal || labels.shading_normal) && mesh.normals) l.normal = add(3);  // else towards the eye
     if (bent) l.tangent = add(3);
     for (int set = 0; set < kMaxUvSets; ++set) {

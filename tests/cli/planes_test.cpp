@@ -76,8 +76,7 @@ TEST_F(CliPlanes, BEY2_ArraysHoldEveryPlane) {
 
 TEST_F(CliPlanes, BEY2_OneExrHasAllChannelsByName) {
     if (!tessera::has_image_module()) GTEST_SKIP() << "built without the OpenImageIO module";
-    const Outcome run =
-        render("materials.gltf", {"-o", in_folder("m.exr"), "--aov", "color,depth,normal,node,motion"});
+    const Outcome run = render("materials.gltf", {"-o", in_folder("m.exr"), "--aov", "color,depth,normal,node,motion"});
     ASSERT_EQ(run.code, 0) << run.err;
     const tessera::RenderResult r = truth("materials.gltf");
     std::map<std::string, Image> channels;
@@ -95,8 +94,8 @@ TEST_F(CliPlanes, BEY2_OneExrHasAllChannelsByName) {
 }
 
 TEST_F(CliPlanes, BEY2_PngHoldsIdsExactlyAndDepthInSteps) {
-    ASSERT_EQ(render("materials.gltf", {"-o", in_folder("{aov}.png"), "--aov", "depth,node,primitive,normal,albedo,uv,alpha",
-                                        "--depth-scale", "500"})
+    ASSERT_EQ(render("materials.gltf", {"-o", in_folder("{aov}.png"), "--aov",
+                                        "depth,node,primitive,normal,albedo,uv,alpha", "--depth-scale", "500"})
                   .code,
               0);
     const tessera::RenderResult r = truth("materials.gltf");
@@ -126,9 +125,10 @@ TEST_F(CliPlanes, BEY2_PngHoldsIdsExactlyAndDepthInSteps) {
 }
 
 TEST_F(CliPlanes, FB2_ColormapsAndPalettesArePalettePictures) {
-    ASSERT_EQ(render("spheres.gltf", {"-o", in_folder("d.png"), "--aov", "depth", "--colormap", "viridis", "--range", "2,12"})
-                  .code,
-              0);
+    ASSERT_EQ(
+        render("spheres.gltf", {"-o", in_folder("d.png"), "--aov", "depth", "--colormap", "viridis", "--range", "2,12"})
+            .code,
+        0);
     ASSERT_EQ(render("spheres.gltf", {"-o", in_folder("n.png"), "--aov", "node", "--colormap", "ids"}).code, 0);
     ASSERT_EQ(render("spheres.gltf", {"-o", in_folder("p.png"), "--palette", "16", "--dither"}).code, 0);
     const auto color_type = [&](const char* name) { return static_cast<int>(read_file(in_folder(name)).at(25)); };
@@ -141,9 +141,8 @@ TEST_F(CliPlanes, FB2_ColormapsAndPalettesArePalettePictures) {
     EXPECT_GE(colors.size(), 8u);
     tessera::RenderOptions o;
     o.width = 64, o.height = 48, o.samples = 1, o.want_color = false, o.want_depth = true;
-    const Image expected = tessera::apply_colormap(
-        tessera::render(tessera::load_scene(scene("spheres.gltf")), o).depth, tessera::Colormap::kViridis,
-        tessera::ValueRange{2, 12});
+    const Image expected = tessera::apply_colormap(tessera::render(tessera::load_scene(scene("spheres.gltf")), o).depth,
+                                                   tessera::Colormap::kViridis, tessera::ValueRange{2, 12});
     const Image d = tessera::read_image(in_folder("d.png"));
     std::size_t different = 0;
     for (std::size_t i = 0; i < 64 * 48; ++i) {
@@ -180,7 +179,8 @@ TEST_F(CliPlanes, WhatCannotBeWrittenIsRefusedByName) {
     refused({"-o", in_folder("a.png"), "--aov", "depth", "--colormap", "jet"}, "--colormap: 'jet' is none of");
     refused({"-o", in_folder("a.png"), "--aov", "depth", "--colormap", "ids"}, "--colormap: ids is for whole numbers");
     refused({"-o", in_folder("a.npy"), "--aov", "depth", "--colormap", "magma"}, "--colormap: makes pictures");
-    refused({"-o", in_folder("a.png"), "--aov", "depth", "--colormap", "magma", "--range", "3,1"}, "--range: must rise");
+    refused({"-o", in_folder("a.png"), "--aov", "depth", "--colormap", "magma", "--range", "3,1"},
+            "--range: must rise");
     refused({"-o", in_folder("a.png"), "--range", "0,1"}, "--range: needs a --colormap");
     refused({"-o", in_folder("a.png"), "--dither"}, "--dither: needs --palette");
     refused({"-o", in_folder("a.jpg"), "--palette", "8"}, "--palette: is for .png");
@@ -195,14 +195,15 @@ TEST_F(CliPlanes, WhatCannotBeWrittenIsRefusedByName) {
 
 // Cameras of a file: one picture each, and each that of its matrix.
 TEST_F(CliPlanes, BEY2_PosesGiveAPictureEach) {
-    std::ofstream(in_folder("cameras.json"))
-        << R"({"intrinsics": [60, 60, 31.5, 23.5], "cameras": [
+    std::ofstream(in_folder("cameras.json")) << R"({"intrinsics": [60, 60, 31.5, 23.5], "cameras": [
             {"name": "front", "camera_to_world": [[1,0,0,0],[0,-1,0,1],[0,0,-1,6],[0,0,0,1]]},
             {"name": "a/b", "camera_to_world": [[0,0,-1,6],[0,-1,0,1],[-1,0,0,0],[0,0,0,1]]}]})";
     const Strings poses{"--poses", in_folder("cameras.json")};
-    const Outcome run = render("spheres.gltf", Strings{"-o", in_folder("{camera}_{aov}.npy"), "--aov", "depth,motion"} + poses);
+    const Outcome run =
+        render("spheres.gltf", Strings{"-o", in_folder("{camera}_{aov}.npy"), "--aov", "depth,motion"} + poses);
     ASSERT_EQ(run.code, 0) << run.err;
-    EXPECT_EQ(folder_contents(), (Strings{"a_b_depth.npy", "a_b_motion.npy", "cameras.json", "front_depth.npy", "front_motion.npy"}));
+    EXPECT_EQ(folder_contents(),
+              (Strings{"a_b_depth.npy", "a_b_motion.npy", "cameras.json", "front_depth.npy", "front_motion.npy"}));
     tessera::RenderOptions o;
     o.width = 64, o.height = 48, o.samples = 1, o.want_color = false, o.want_depth = o.want_motion = true;
     o.view.intrinsics = tessera::Intrinsics{60, 60, 31.5, 23.5};
@@ -216,7 +217,10 @@ TEST_F(CliPlanes, BEY2_PosesGiveAPictureEach) {
     // Resumed: what is there stays.
     std::filesystem::remove(in_folder("a_b_depth.npy"));
     std::ofstream(in_folder("front_depth.npy")) << "kept";
-    ASSERT_EQ(render("spheres.gltf", Strings{"-o", in_folder("{camera}_{aov}.npy"), "--aov", "depth,motion", "--skip-existing"} + poses).code, 0);
+    ASSERT_EQ(render("spheres.gltf",
+                     Strings{"-o", in_folder("{camera}_{aov}.npy"), "--aov", "depth,motion", "--skip-existing"} + poses)
+                  .code,
+              0);
     expect_plane("a_b_depth.npy", r.depth);
     EXPECT_EQ(read_file(in_folder("front_depth.npy")), "kept");
     EXPECT_EQ(render("spheres.gltf", Strings{"-o", in_folder("x.npy"), "--aov", "depth"} + poses).code, 2);
@@ -229,8 +233,8 @@ TEST_F(CliPlanes, BEY2_PosesGiveAPictureEach) {
 TEST_F(CliPlanes, BEY2_LabelsSpeakOfTheFilesAxes) {
     std::ofstream(in_folder("t.stl")) << "solid t\nfacet normal 0 0 1\nouter loop\nvertex -1 -1 2\nvertex 1 -1 2\n"
                                          "vertex 0 1 2\nendloop\nendfacet\nendsolid t\n";
-    const Outcome run = run_command({"render", in_folder("t.stl"), "--up", "z", "--eye", "0,0,9", "--target", "0,0,0", "-s",
-                                     "32x32", "-o", in_folder("{aov}.npy"), "--aov", "position,normal"});
+    const Outcome run = run_command({"render", in_folder("t.stl"), "--up", "z", "--eye", "0,0,9", "--target", "0,0,0",
+                                     "-s", "32x32", "-o", in_folder("{aov}.npy"), "--aov", "position,normal"});
     ASSERT_EQ(run.code, 0) << run.err;
     const tessera::NpyArray position = tessera::read_npy(in_folder("position.npy")),
                             normal = tessera::read_npy(in_folder("normal.npy"));

@@ -19,7 +19,8 @@ constexpr const char* kOpenCv = "[[0,1,0,1],[1,0,0,2],[0,0,-1,3],[0,0,0,1]]";
 constexpr const char* kWorldToOpenCv = "[[0,1,0,-2],[1,0,0,-1],[0,0,-1,3]]";
 
 std::string cameras(const std::string& convention, const std::string& member, const char* matrix) {
-    return R"({"convention": ")" + convention + R"(", "cameras": [{"name": "a", ")" + member + R"(": )" + matrix + "}]}";
+    return R"({"convention": ")" + convention + R"(", "cameras": [{"name": "a", ")" + member + R"(": )" + matrix +
+           "}]}";
 }
 
 TEST(Poses, GEO6_ConventionsNameTheSameCamera) {
@@ -31,16 +32,17 @@ TEST(Poses, GEO6_ConventionsNameTheSameCamera) {
     EXPECT_FALSE(gl.view.intrinsics);
     EXPECT_EQ(one(cameras("opencv", "camera_to_world", kOpenCv)).view.camera_to_world, expected);
     EXPECT_EQ(one(cameras("opencv", "world_to_camera", kWorldToOpenCv)).view.camera_to_world, expected);
-    const std::string nerf = std::string(R"({"frames": [{"file_path": "./train/r_0.png", "transform_matrix": )") +
-                             kOpenGl + "}]}";
+    const std::string nerf =
+        std::string(R"({"frames": [{"file_path": "./train/r_0.png", "transform_matrix": )") + kOpenGl + "}]}";
     EXPECT_EQ(one(nerf).name, "r_0");
     EXPECT_EQ(one(nerf).view.camera_to_world, expected);
 }
 
 TEST(Poses, GEO6_IntrinsicsOfAllOrOfOne) {
-    const std::string json = std::string(R"({"width": 64, "height": 48, "intrinsics": [50, 51, 31.5, 23.25], "cameras": [)") +
-                             R"({"camera_to_world": )" + kOpenCv + R"(}, {"name": "b", "camera_to_world": )" + kOpenCv +
-                             R"(, "intrinsics": [1.5, 2.5, 3, 4]}]})";
+    const std::string json =
+        std::string(R"({"width": 64, "height": 48, "intrinsics": [50, 51, 31.5, 23.25], "cameras": [)") +
+        R"({"camera_to_world": )" + kOpenCv + R"(}, {"name": "b", "camera_to_world": )" + kOpenCv +
+        R"(, "intrinsics": [1.5, 2.5, 3, 4]}]})";
     const std::vector<Pose> poses = parse_poses(json, 64, 48);
     ASSERT_EQ(poses.size(), 2u);
     EXPECT_EQ(poses[0].name, "0");
@@ -60,7 +62,8 @@ TEST(Poses, GEO6_TransformsOfNeRF) {
     EXPECT_EQ(k.fy, k.fx);
     EXPECT_EQ(k.cx, 31.5);
     EXPECT_EQ(k.cy, 23.5);
-    EXPECT_EQ(lens(R"("fl_x": 70, "fl_y": 71, "cx": 33, "cy": 20, "w": 64, "h": 48, )"), (Intrinsics{70, 71, 32.5, 19.5}));
+    EXPECT_EQ(lens(R"("fl_x": 70, "fl_y": 71, "cx": 33, "cy": 20, "w": 64, "h": 48, )"),
+              (Intrinsics{70, 71, 32.5, 19.5}));
 }
 
 TEST(Poses, FaultsAreNamedByTheirPlace) {
