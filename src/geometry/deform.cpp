@@ -70,7 +70,9 @@ JointMatrices joint_matrices(const Skin& skin, const std::vector<glm::dmat4>& wo
 }
 
 DeformedMesh::DeformedMesh(const PreparedMesh& rest, const Primitive& source)
-    : rest_(rest.primitive()), flat_(source.normals.empty() && has_triangles(source.mode)), mesh_(drawn_part(rest_), source) {
+    : rest_(rest.primitive()),
+      flat_(source.normals.empty() && has_triangles(source.mode)),
+      mesh_(drawn_part(rest_), source) {
     mesh_.deformed = true;
     if (has_joints(rest_)) set_influences();
 }

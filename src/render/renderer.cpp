@@ -82,6 +82,7 @@ void Renderer::Impl::draw(const Shot& now, const Shot& earlier, const Shot& late
                        {result.motion.data<float>(), result.motion_seen.data<std::uint32_t>()});
         watch.phase("motion");
     }
+    if (frame.points + frame.lines > 0) label_strokes(scene, frame, arena, result);
     finish_planes(options, result);
 
     result.warnings = frame.warnings;
@@ -97,7 +98,7 @@ void Renderer::Impl::draw(const Shot& now, const Shot& earlier, const Shot& late
 void Renderer::Impl::see_other(const Shot& shot, const Watchdog& watchdog, OtherShot& other) {
     prepared.move_to(shot.moment);
     other.frame.keep_nodes = true;
-    make_frame(prepared, shot.view, options.width, options.height, other.frame);
+    make_frame(prepared, shot.view, options.width, options.height, stroke_style(options), other.frame);
     other.keep_positions();
     shading.light(scene, other.frame, options);
     other.seen.resize(static_cast<std::size_t>(options.width) * static_cast<std::size_t>(options.height));

@@ -29,7 +29,7 @@ TESSERA_INLINE SurfaceLayout label_layout(const MeshView& mesh, const MaterialVi
         return first;
     };
     const bool bent = labels.shading_normal && mesh.tangents && material.input(TextureSlot::kNormal).texture;
-    if (labels.normal || labels.shading_normal) l.normal = add(3);
+    if ((labels.normal || labels.shading_normal) && mesh.normals) l.normal = add(3);
     if (bent) l.tangent = add(3);
     for (int set = 0; set < kMaxUvSets; ++set) {
         bool used = labels.uv && set == 0;
