@@ -49,7 +49,7 @@ BenchFrame::BenchFrame(const std::string& name)
       samples_(sample_positions(workload.options)) {
     std::vector<std::string> warnings;
     shading = std::make_unique<ShadingScene>(workload.scene, prepared->used_materials(), arena, warnings);
-    make_frame(*prepared, workload.options.view, workload.options.width, workload.options.height, frame);
+    make_frame(*prepared, workload.options.view, workload.options.width, workload.options.height, {}, frame);
     shading->light(workload.scene, frame, workload.options);
     front.run(input(raster_kernels(Isa::kScalar)), arena);
 }

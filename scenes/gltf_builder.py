@@ -274,6 +274,20 @@ class Document:
                 "indices": self.accessor(key + " indices", triangles, "SCALAR", USHORT, ELEMENT_ARRAY_BUFFER)}
         return self.add("meshes", {"name": name, "primitives": [{**self.shapes[key], "material": material}]})
 
+    def strokes(self, name, mode, positions, material, colors=None, normals=None, indices=None):
+        """A mesh of points (mode 0), lines (1), a loop (2) or a strip of lines (3)."""
+        assert len(positions) < 65536
+        attributes = {"POSITION": self.accessor(name + " positions", positions, "VEC3", FLOAT, ARRAY_BUFFER)}
+        if normals:
+            attributes["NORMAL"] = self.accessor(name + " normals", normals, "VEC3", FLOAT, ARRAY_BUFFER)
+        if colors:
+            attributes["COLOR_0"] = self.accessor(name + " colors", colors, "VEC4", FLOAT, ARRAY_BUFFER)
+        primitive = {"attributes": attributes, "mode": mode, "material": material}
+        if indices:
+            primitive["indices"] = self.accessor(name + " indices", [[i] for i in indices], "SCALAR", USHORT,
+                                                 ELEMENT_ARRAY_BUFFER)
+        return self.add("meshes", {"name": name, "primitives": [primitive]})
+
     def morph(self, mesh, name, positions, normals):
         """Adds a target to the mesh's primitive: what its vertices move and its normals change by."""
         primitive = self.parts["meshes"][mesh]["primitives"][0]

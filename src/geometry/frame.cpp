@@ -60,19 +60,19 @@ constexpr std::uint64_t kMostTriangles = 0xfffffffeu;
 
 // Consecutive points or segments of one primitive: an instance of their own.
 struct StrokeTask {
-    const Primitive* primitive;
+    const PreparedMesh* mesh;
     std::uint32_t first, count;
     std::size_t instance;
 };
 constexpr std::uint32_t kTaskElements = 16384;
 
 // Returns how many.
-std::size_t add_tasks(const Primitive& primitive, std::uint32_t elements, std::size_t instance,
+std::size_t add_tasks(const PreparedMesh& mesh, std::uint32_t elements, std::size_t instance,
                       std::vector<StrokeTask>& tasks) {
     const std::size_t before = tasks.size();
     for (std::uint32_t first = 0, part = 0; first < elements; first += part) {
         part = std::min(kTaskElements, elements - first);
-        tasks.push_back({&primitive, first, part, instance++});
+        tasks.push_back({&mesh, first, part, instance++});
     }
     return tasks.size() - before;
 }
@@ -86,7 +86,7 @@ void make_strokes(const StrokeSpace& space, const std::vector<StrokeTask>& tasks
         const StrokeTask& task = tasks[t];
         StrokeMesh& mesh = *frame.strokes[t];
         InstanceView& instance = frame.instances[task.instance];
-        mesh.make(instance, *task.primitive, task.first, task.count, space);
+        mesh.make(instance, *task.mesh, task.first, task.count, space);
         if ((bytes += mesh.bytes()) > max_bytes)
             throw Error(ErrorCode::kLimit, "points and lines need more memory than the limit allows");
         instance.mesh = mesh.view;
@@ -108,12 +108,14 @@ void number_triangles(Frame& frame) {
         if (instance.mesh.triangle_count == 0) continue;
         frame.instances[kept] = instance;
         frame.instances[kept].first_triangle = static_cast<std::uint32_t>(triangles);
+        if (frame.keep_nodes) frame.node_of_instance[kept] = frame.node_of_instance[i];
         frame.prepared[kept++] = frame.prepared[i];
         triangles += instance.mesh.triangle_count;
         if (triangles > kMostTriangles) refuse_triangles();
     }
     frame.instances.resize(kept);
     frame.prepared.resize(kept);
+    if (frame.keep_nodes) frame.node_of_instance.resize(kept);
     frame.triangle_count = static_cast<std::uint32_t>(triangles);
 }
 
@@ -166,7 +168,8 @@ void make_frame(PreparedScene& scene, const View& view, int width, int height, c
             std::size_t copies = 1;  // of strokes one for each task, which are filled below
             if (!has_triangles(primitive.mode)) {
                 (primitive.mode == PrimitiveMode::kPoints ? frame.points : frame.lines) += elements;
-                copies = add_tasks(primitive, static_cast<std::uint32_t>(elements), frame.instances.size(), tasks);
+                copies =
+                    add_tasks(*placement.mesh, static_cast<std::uint32_t>(elements), frame.instances.size(), tasks);
             }
             frame.instances.insert(frame.instances.end(), copies, instance);
             frame.prepared.insert(frame.prepared.end(), copies, placement.mesh);

@@ -8,8 +8,11 @@
 
 namespace tessera {
 
+struct PreparedMesh;
+
 // What engines draw.
 struct DrawnMesh {
+    const PreparedMesh* stroke_of = nullptr;  // set where it is made of another mesh's points or lines
     MeshView view{};
     Bounds3 bounds;                                       // of all vertices, in the view's space
     std::uint32_t lowest_vertex = 0, highest_vertex = 0;  // that a triangle names
@@ -30,6 +33,11 @@ struct PreparedMesh : DrawnMesh {
     TriangleList triangles;   // of primitive()
     bool deformed = false;    // its vertices are written over as the scene moves
 };
+
+// The scene's mesh that is drawn.
+inline const PreparedMesh& prepared_mesh(const DrawnMesh& mesh) {
+    return mesh.stroke_of ? *mesh.stroke_of : static_cast<const PreparedMesh&>(mesh);
+}
 
 // With the normals and tangents that drawing with this material (null: none) needs and the file lacks.
 PreparedMesh prepare_mesh(const Primitive& primitive, const Material* material);

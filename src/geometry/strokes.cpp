@@ -234,24 +234,19 @@ void StrokeMesh::clear() {
     bounds = {};
 }
 
-void StrokeMesh::make(const InstanceView& instance, const Primitive& primitive, std::uint32_t first,
-                      std::uint32_t count, const StrokeSpace& space) {
+void StrokeMesh::make(const InstanceView& instance, const PreparedMesh& mesh, std::uint32_t first, std::uint32_t count,
+                      const StrokeSpace& space) {
     clear();
     instance_ = &instance;
-    const std::vector<std::uint32_t>& indices = primitive.indices;
-    const auto references = static_cast<std::uint32_t>(indices.empty() ? primitive.positions.size() : indices.size());
-    const auto vertex = [&](std::uint32_t i) { return indices.empty() ? i : indices[i]; };
-    const PrimitiveMode mode = primitive.mode;
+    stroke_of = &mesh;
+    const bool points = mesh.primitive().mode == PrimitiveMode::kPoints;
     for (std::uint32_t e = first; e < first + count; ++e) {
-        if (mode == PrimitiveMode::kPoints) {
-            add_point(e, vertex(e), space);
-        } else if (mode == PrimitiveMode::kLines) {
-            add_segment(e, vertex(2 * e), vertex(2 * e + 1), space);
-        } else {
-            add_segment(e, vertex(e), vertex(e + 1 < references ? e + 1 : 0), space);
-        }
+        const auto [from, to] = stroke_vertices(mesh.primitive(), e);
+        if (points)
+            add_point(e, from, space);
+        else
+            add_segment(e, from, to, space);
     }
-    const bool points = mode == PrimitiveMode::kPoints;
     set_view(points ? static_cast<std::uint32_t>(space.corners.size()) - 2 : 2, !points);
     instance_ = nullptr;
 }

@@ -48,7 +48,7 @@ class StrokeMesh : public DrawnMesh {
 
     // Makes the elements (element_count()) first .. first + count - 1 of a mesh as `instance` places it, but for those
     // that lie outside of the picture.
-    void make(const InstanceView& instance, const Primitive& primitive, std::uint32_t first, std::uint32_t count,
+    void make(const InstanceView& instance, const PreparedMesh& mesh, std::uint32_t first, std::uint32_t count,
               const StrokeSpace& space);
     // What the latest make() filled.
     std::uint64_t bytes() const;

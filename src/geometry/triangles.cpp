@@ -73,6 +73,15 @@ std::size_t element_count(const Primitive& primitive) {
     return triangle_count(primitive);
 }
 
+std::array<std::uint32_t, 2> stroke_vertices(const Primitive& primitive, std::uint32_t element) {
+    const bool list = primitive.mode == PrimitiveMode::kLines;
+    const std::size_t from = list ? 2 * std::size_t{element} : element;
+    std::size_t to = primitive.mode == PrimitiveMode::kPoints ? from : from + 1;
+    if (to == vertex_references(primitive)) to = 0;  // a loop closes
+    if (primitive.indices.empty()) return {static_cast<std::uint32_t>(from), static_cast<std::uint32_t>(to)};
+    return {primitive.indices[from], primitive.indices[to]};
+}
+
 std::size_t used_index_count(const Primitive& primitive) {
     const std::size_t n = vertex_references(primitive);
     switch (primitive.mode) {

@@ -26,6 +26,9 @@ std::size_t triangle_count(const Primitive& primitive);
 // Number of complete points, lines or triangles.
 std::size_t element_count(const Primitive& primitive);
 
+// The vertices of point `element` (twice the same) or line `element`.
+std::array<std::uint32_t, 2> stroke_vertices(const Primitive& primitive, std::uint32_t element);
+
 // How many entries of the index list (or vertices, where there are no indices) belong to complete
 // points, lines or triangles: the rest is never drawn.
 std::size_t used_index_count(const Primitive& primitive);

@@ -88,4 +88,24 @@ LabelCounts take_labels(ReferenceEngine& engine, const Frame& frame, const RunCo
     return counts;
 }
 
+void label_strokes(const Scene& scene, const Frame& frame, Arena& arena, RenderResult& result) {
+    std::uint32_t* const primitive = result.primitive.empty() ? nullptr : result.primitive.data<std::uint32_t>();
+    std::uint32_t* const material = result.material.empty() ? nullptr : result.material.data<std::uint32_t>();
+    if (!primitive && !material) return;
+    const auto lit = static_cast<std::uint32_t>(lit_materials(scene));
+    const auto width = static_cast<std::size_t>(frame.projection.width);
+    arena.for_each(static_cast<std::size_t>(frame.projection.height), [&](std::size_t y) {
+        const InstanceView* instance = nullptr;  // the latest
+        for (std::size_t i = y * width; i < (y + 1) * width; ++i) {
+            if (material && material[i] > lit) material[i] = material[i] > 2 * lit ? lit : material[i] - lit;
+            if (!primitive || primitive[i] == 0) continue;
+            const std::uint32_t triangle = primitive[i] - 1;
+            if (!instance || triangle - instance->first_triangle >= instance->mesh.triangle_count)
+                instance = &frame.instance_of(triangle);
+            primitive[i] =
+                1 + instance->first_primitive + instance->mesh.element_of(triangle - instance->first_triangle);
+        }
+    });
+}
+
 }  // namespace tessera

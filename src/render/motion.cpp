@@ -3,6 +3,7 @@
 #include "shading/triangle_setup.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 
@@ -28,11 +29,12 @@ struct Moved {
             while (first < nodes.size() && nodes[first] < node) ++first;
             std::uint32_t found = kNoInstance;
             for (std::size_t j = first; j < nodes.size() && nodes[j] == node && found == kNoInstance; ++j)
-                if (other.frame.prepared[j] == now.prepared[i]) found = static_cast<std::uint32_t>(j);
+                if (&prepared_mesh(*other.frame.prepared[j]) == &prepared_mesh(*now.prepared[i]))
+                    found = static_cast<std::uint32_t>(j);
             instance.push_back(found);
             const bool same_place =
                 node < other.frame.node_to_clip.size() && other.frame.node_to_clip[node] == now.node_to_clip[node];
-            stands.push_back(same_place && !now.prepared[i]->deformed);
+            stands.push_back(same_place && !prepared_mesh(*now.prepared[i]).deformed);
         }
     }
 };
@@ -71,6 +73,16 @@ class OtherTriangles {
         if (covered || !nearest || *nearest == 0) return true;
         const TriangleSetup& t = setup(*nearest - 1);
         return t.depth.at(q.x, q.y) <= depth + slack(own, 256) + slack(t, 256);
+    }
+
+    // The same for a point at `q` that has no surface around it: whether the pixel shows nothing that is nearer.
+    bool sees_point(float depth, SamplePosition q) {
+        const auto width = static_cast<std::size_t>(other_.frame.projection.width);
+        const std::uint32_t number =
+            other_.seen[static_cast<std::size_t>(q.y >> 8) * width + static_cast<std::size_t>(q.x >> 8)];
+        if (number == 0) return true;
+        const TriangleSetup& t = setup(number - 1);
+        return t.depth.at(q.x, q.y) <= depth + slack(t, 256) + 1e-6f * depth;
     }
 
   private:
@@ -141,6 +153,7 @@ class RowMotion {
     // Writes x and y to `vector`; returns whether the point is seen there.
     bool measure(std::uint32_t triangle, int x, int y, float* vector) {
         find(triangle);
+        if (stroke_) return measure_stroke(x + 0.5, y + 0.5, vector);
         if (stands_) return sees({256 * x + 128, 256 * y + 128});
         const double px = x + 0.5, py = y + 0.5;
         const double w = static_cast<double>(now_.projection.width), h = static_cast<double>(now_.projection.height);
@@ -156,6 +169,28 @@ class RowMotion {
     }
 
   private:
+    // Points move as their centres do, and what lines show as the points of the line beside it along the minor axis.
+    bool measure_stroke(double px, double py, float* vector) {
+        const double w = static_cast<double>(now_.projection.width), h = static_cast<double>(now_.projection.height);
+        const double x = 2 * px / w - 1, y = 1 - 2 * py / h;
+        const glm::dvec4 along = here_[1] - here_[0];
+        const double per_x = along.x - x * along.w, per_y = along.y - y * along.w;
+        const bool x_major = std::fabs(per_x) * w >= std::fabs(per_y) * h;
+        const double per = x_major ? per_x : per_y;
+        const double behind = x_major ? x * here_[0].w - here_[0].x : y * here_[0].w - here_[0].y;
+        const double t = per != 0 ? std::clamp(behind / per, 0.0, 1.0) : 0.0;
+        const glm::dvec4 from = here_[0] + along * t, to = there_[0] + (there_[1] - there_[0]) * t;
+        if (!(from.w > 0 && to.w > 0)) return false;
+        const double dx = stands_ ? 0 : (to.x / to.w - from.x / from.w) * 0.5 * w,
+                     dy = stands_ ? 0 : (from.y / from.w - to.y / to.w) * 0.5 * h;
+        const double qx = px + dx, qy = py + dy;
+        if (!(std::fabs(qx) < 1e7 && std::fabs(qy) < 1e7)) return false;
+        vector[0] = static_cast<float>(dx), vector[1] = static_cast<float>(dy);
+        const bool inside = qx >= 0 && qx < w && qy >= 0 && qy < h && to.z <= to.w && to.z >= 0;
+        return inside && triangles_.sees_point(static_cast<float>(to.z / to.w), {static_cast<std::int32_t>(qx * 256),
+                                                                                 static_cast<std::int32_t>(qy * 256)});
+    }
+
     // One that is not drawn there is a duplicate: the one that is stands at the same place.
     bool sees(SamplePosition q) {
         return there_instance_ == kNoInstance ||
@@ -170,12 +205,16 @@ class RowMotion {
         local_ = triangle - instance.first_triangle;
         there_instance_ = moved_.instance[i];
         stands_ = moved_.stands[i] != 0;
-        if (stands_) return;
+        stroke_ = instance.mesh.is_stroke();
+        if (stands_ && !stroke_) return;
         const std::uint32_t node = now_.node_of_instance[i];
-        const float* const positions = other_.positions_of(*now_.prepared[i]);
-        for (std::size_t k = 0; k < 3; ++k) {
-            const std::size_t vertex = instance.mesh.triangles[3 * std::size_t{local_} + k];
-            here_[k] = clip_position(now_.node_to_clip[node], instance.mesh.positions + 3 * vertex);
+        const PreparedMesh& mesh = prepared_mesh(*now_.prepared[i]);
+        const float* const positions = other_.positions_of(mesh);
+        std::array<std::uint32_t, 2> ends{};
+        if (stroke_) ends = stroke_vertices(mesh.primitive(), instance.mesh.element_of(local_));
+        for (std::size_t k = 0; k < (stroke_ ? 2 : 3); ++k) {
+            const std::size_t vertex = stroke_ ? ends[k] : instance.mesh.triangles[3 * std::size_t{local_} + k];
+            here_[k] = clip_position(now_.node_to_clip[node], mesh.view.positions + 3 * vertex);
             there_[k] = clip_position(other_.frame.node_to_clip[node], positions + 3 * vertex);
         }
     }
@@ -185,7 +224,7 @@ class RowMotion {
     const Moved& moved_;
     OtherTriangles triangles_;
     std::uint32_t triangle_ = 0xffffffffu, local_ = 0, there_instance_ = kNoInstance;
-    bool stands_ = false;
+    bool stands_ = false, stroke_ = false;
     glm::dvec4 here_[3], there_[3];
 };
 
@@ -194,12 +233,12 @@ class RowMotion {
 void OtherShot::keep_positions() {
     positions_.clear();
     for (std::size_t i = 0; i < frame.instances.size(); ++i) {
-        const PreparedMesh& mesh = *frame.prepared[i];
+        const PreparedMesh& mesh = prepared_mesh(*frame.prepared[i]);
         if (!mesh.deformed) continue;
         std::vector<float>& copy = positions_[&mesh];
         if (copy.empty())
             copy.assign(mesh.view.positions, mesh.view.positions + 3 * std::size_t{mesh.view.vertex_count});
-        frame.instances[i].mesh.positions = copy.data();
+        if (!frame.instances[i].mesh.is_stroke()) frame.instances[i].mesh.positions = copy.data();
     }
 }
 

@@ -82,6 +82,7 @@ void Renderer::Impl::draw(const Shot& now, const Shot& earlier, const Shot& late
                        {result.motion.data<float>(), result.motion_seen.data<std::uint32_t>()});
         watch.phase("motion");
     }
+    if (frame.points + frame.lines > 0) label_strokes(scene, frame, arena, result);
     finish_planes(options, result);
 
     result.warnings = frame.warnings;

@@ -68,7 +68,7 @@ std::vector<std::array<Point, 3>> triangles_at(const Scene& scene, const Moment&
     const Evaluation truth(scene, moment.animation, moment.time);
     std::vector<std::array<Point, 3>> all;
     for (std::size_t i = 0; i < frame.instances.size(); ++i) {
-        const Primitive& source = *frame.prepared[i]->source;
+        const Primitive& source = *prepared_mesh(*frame.prepared[i]).source;
         const TriangleList list(source);
         for (std::size_t t = 0; t < list.count(); ++t) {
             std::array<Point, 3> v;
@@ -175,7 +175,7 @@ TEST(MotionVectors, BEY2_AreThoseOfRaysOnEveryAnimatedModel) {
                 PreparedScene prepared(scene);
                 prepared.move_to(at);
                 Frame frame;
-                make_frame(prepared, o.view, kWidth, kHeight, frame);
+                make_frame(prepared, o.view, kWidth, kHeight, {}, frame);
                 const auto here = triangles_at(scene, at, frame);
                 compare(r, here, triangles_at(scene, after, frame), now, later, 0, tally);
                 compare(r, here, triangles_at(scene, before, frame), now, now, 1, tally);
