@@ -69,7 +69,7 @@ class ModuleFile {
         return samples;
     }
     [[noreturn]] void fail(const std::string& what) const {
-        throw Error(ErrorCode::kInput, "damaged " + name_ + ": " + what);
+        throw Error(ErrorCode::kInput, "the " + name_ + " cannot be read: " + what);
     }
 
   private:

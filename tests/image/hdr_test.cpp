@@ -68,7 +68,7 @@ TEST(Rgbe, EveryMantissaAndExponentIsAsDefined) {
 }
 
 TEST(Rgbe, EncodesAsDefined) {
-    constexpr float kInfinity = std::numeric_limits<float>::infinity(), kNan = std::nanf("");
+    constexpr float kInfinity = std::numeric_limits<float>::infinity(), kNan = std::numeric_limits<float>::quiet_NaN();
     for (const Rgb& rgb :
          {Rgb{0, 0, 0}, Rgb{1, 1, 1}, Rgb{-1, -0.0f, 2}, Rgb{kNan, 0.5f, kInfinity}, Rgb{kNan, -1, kNan},
           Rgb{255.49999f, 1, 0}, Rgb{255.5f, 1, 0}, Rgb{0.99609375f, 0.998046875f, 0.99804687f}, Rgb{0x1p-128f, 0, 0},
