@@ -111,7 +111,9 @@ TEST(PictureFormats, MapsOfMtl) {
         return load_scene((folder.path() / "a.obj").string());
     };
     EXPECT_EQ(green_of(load("a.webp", webp())), 200);
-    if (has_image_module()) EXPECT_EQ(green_of(load("a.tif", encode_tiff(flat(1, 77, 3)))), 77);
+    if (has_image_module()) {
+        EXPECT_EQ(green_of(load("a.tif", encode_tiff(flat(1, 77, 3)))), 77);
+    }
     const Scene floats = load("a.hdr", encode_hdr(Image(4, 4, PixelFormat::kRgba32f)));
     EXPECT_EQ(green_of(floats), -1);
     EXPECT_TRUE(warned(floats, "floating-point values"));
