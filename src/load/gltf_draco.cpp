@@ -49,12 +49,13 @@ DracoHeader read_header(const Json& json, std::span<const std::byte> packed, Dra
     const bool edgebreaker = byte(8) == 1;
     std::span<const std::byte> rest = packed.subspan(edgebreaker ? 12 : 11);
     const std::optional<std::uint64_t> first = take_number(rest), second = take_number(rest);
-    if (!first || !second || rest.empty()) json.fail("the data of Draco are cut off");
+    if (!first || !second) json.fail("the data of Draco are cut off");
     const std::uint64_t faces = edgebreaker ? *second : *first, points = edgebreaker ? *first : *second;
     if (promised.strip ? faces > promised.count : faces != promised.count)
         json.fail(std::to_string(faces) + " triangles are packed, the accessors promise " +
                   std::to_string(promised.count));
     if (points > 3 * faces) json.fail(std::to_string(points) + " vertices for " + std::to_string(faces) + " triangles");
+    if (rest.empty()) json.fail("the data of Draco are cut off");
     return {edgebreaker, faces, points, edgebreaker ? static_cast<std::uint64_t>(rest.front()) : 0};
 }
 

@@ -55,6 +55,8 @@ TESSERA_INLINE Vec3T<F> albedo(const MaterialView& m, const SurfacePoint<F>& s) 
         case ShadingModel::kPhong:
         case ShadingModel::kBlinnPhong:
             return Vec3T<F>::load(m.diffuse) * surface_color(m, s).xyz();
+        case ShadingModel::kSpecularGlossiness:
+            return evaluate_material(m, s).base;  // less what is mirrored
         case ShadingModel::kMetallicRoughness:
         case ShadingModel::kUnlit:
             break;

@@ -100,7 +100,10 @@ TEST_F(Cli, InfoShowsTheLayersOfMaterials) {
     EXPECT_EQ(double(m["anisotropy"]["rotation_rad"]), 1);
     EXPECT_EQ(double(m["iridescence"]["thickness_at_white_nm"]), 400);
     EXPECT_EQ(double(m["dispersion"]), 0.5);
-    EXPECT_EQ(simdjson::dom::array(json["warnings"]).size(), 7u) << "one for each that is not drawn: " << run.out;
+    int undrawn = 0;
+    for (const auto warning : simdjson::dom::array(json["warnings"]))
+        undrawn += std::string_view(warning).find("not drawn yet") != std::string_view::npos;
+    EXPECT_EQ(undrawn, 7) << run.out;
     // What a material does not have is not there.
     for (const char* key : {"clearcoat", "sheen", "transmission", "volume", "anisotropy", "iridescence", "dispersion"})
         EXPECT_NE(json["materials"].at(1)[key].error(), simdjson::SUCCESS) << key;

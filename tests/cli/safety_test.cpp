@@ -52,10 +52,8 @@ TEST_F(CliSafety, SAFE_AWriteThatBreaksOffLeavesNothingBehind) {
     // Without room for a byte: the statistics, too.
     std::filesystem::remove(in_folder("a.png"));
     EXPECT_EQ(run_limited("ulimit -f 0", picture(in_folder("a.png"))).code, 5);
-    const Outcome statistics =
-        run_limited("ulimit -f 0", {"render", scene("materials.gltf"), "-s", "8x8", "--stats", in_folder("s.json")});
-    EXPECT_EQ(statistics.code, 5) << statistics.err;
-    EXPECT_NE(statistics.err.find("s.json"), std::string::npos) << statistics.err;
+    const Strings statistics{"render", scene("materials.gltf"), "-s", "8x8", "--stats", in_folder("s.json")};
+    EXPECT_EQ(run_limited("ulimit -f 0", statistics).code, 5);  // no room for its message either
     EXPECT_EQ(folder_contents(), Strings{});
 }
 

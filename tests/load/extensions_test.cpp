@@ -124,14 +124,14 @@ Material material(const std::string& extension, const std::string& members) {
         .materials[0];
 }
 
-TEST(SpecularGlossiness, IsADielectricOfThatReflectance) {
+TEST(SpecularGlossiness, IsRead) {
     const Material m =
         material("KHR_materials_pbrSpecularGlossiness",
                  "\"diffuseFactor\":[0.5,0.25,0,0.5],\"specularFactor\":[0.25,0.5,1],\"glossinessFactor\":0.75");
     EXPECT_EQ(m.base_color, (Vec4{0.5f, 0.25f, 0, 0.5f}));
     EXPECT_EQ(m.metallic, 0.0f);
     EXPECT_EQ(m.roughness, 0.25f);
-    EXPECT_EQ(m.ior, 0.0f);  // infinite: all of the colour is reflected
+    EXPECT_EQ(m.model, ShadingModel::kSpecularGlossiness);
     EXPECT_EQ(m.specular_color, (Vec3{0.25f, 0.5f, 1}));
 }
 

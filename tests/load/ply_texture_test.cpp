@@ -10,7 +10,8 @@
 #include <array>
 #include <cstring>
 #include <fstream>
-#include <tuple>
+#include <sstream>
+#include <utility>
 
 namespace tessera {
 namespace {
@@ -22,16 +23,16 @@ constexpr int kFaces[6][4] = {{3, 2, 1, 0}, {4, 5, 6, 7}, {0, 1, 5, 4}, {2, 3, 7
 constexpr float kUv[4][2] = {{0, 0}, {1, 0}, {1, 0.75f}, {0, 0.75f}};
 
 std::string obj_cube() {
-    std::string text = "mtllib m.mtl\nusemtl m\n";
-    for (const auto& v : kCorners)
-        text += "v " + std::to_string(v[0]) + " " + std::to_string(v[1]) + " " + std::to_string(v[2]) + "\n";
-    for (const auto& t : kUv) text += "vt " + std::to_string(t[0]) + " " + std::to_string(t[1]) + "\n";
+    std::ostringstream text;
+    text << "mtllib m.mtl\nusemtl m\n";
+    for (const auto& v : kCorners) text << "v " << v[0] << " " << v[1] << " " << v[2] << "\n";
+    for (const auto& t : kUv) text << "vt " << t[0] << " " << t[1] << "\n";
     for (const auto& f : kFaces) {
-        text += "f";
-        for (int k = 0; k < 4; ++k) text += " " + std::to_string(f[k] + 1) + "/" + std::to_string(k + 1);
-        text += "\n";
+        text << "f";
+        for (int k = 0; k < 4; ++k) text << " " << f[k] + 1 << "/" << k + 1;
+        text << "\n";
     }
-    return text;
+    return text.str();
 }
 
 enum class Form { kAscii, kBinary };
@@ -48,7 +49,7 @@ std::string ply_cube(Form form, const std::vector<std::string>& textures) {
         "end_header\n";
     const auto add = [&](auto value) {
         if (!binary) {
-            text += std::to_string(value) + " ";
+            text.append(std::to_string(value)).append(" ");
             return;
         }
         char bytes[sizeof value];
