@@ -356,8 +356,8 @@ def lines():
     ink = doc.material("ink", srgb("#f2e8cf"))
     white = doc.material("white", (1, 1, 1))
     glass = doc.material("glass", srgb("#8fd0ff"), alpha=0.5, alphaMode="BLEND")
-    doc.node("floor", mesh=doc.mesh("floor", quad([0, 0, 0], [6, 0, 0], [0, 0, -6]), paper))
-    doc.node("wall", mesh=doc.mesh("wall", quad([0, 2, -3], [6, 0, 0], [0, 2, 0]), paper))
+    doc.node("floor", mesh=doc.mesh("floor", quad([0, 0, 0], [8, 0, 0], [0, 0, -6]), paper))
+    doc.node("wall", mesh=doc.mesh("wall", quad([0, 3, -3], [8, 0, 0], [0, 3, 0]), paper))
 
     def rainbow(t):
         return [0.5 + 0.5 * math.cos(2 * math.pi * (t - shift)) for shift in (0, 1 / 3, 2 / 3)] + [1.0]
@@ -368,7 +368,7 @@ def lines():
         return [r * math.cos(2 * a), r * math.sin(2 * a), 0.28 * math.sin(3 * a)]
 
     steps = 240
-    doc.node("knot", translation=[-1.9, 1.6, 0], mesh=doc.strokes(
+    doc.node("knot", translation=[-1.85, 1.2, 0.2], scale=[0.8] * 3, mesh=doc.strokes(
         "knot", 3, [knot(i / steps) for i in range(steps + 1)], white, [rainbow(i / steps) for i in range(steps + 1)]))
 
     def on_globe(latitude, longitude, radius):
@@ -376,7 +376,7 @@ def lines():
                 radius * math.cos(latitude) * math.sin(longitude)]
 
     rows, columns = 9, 24
-    grid = [on_globe(math.pi * (r + 1) / (rows + 1) - math.pi / 2, 2 * math.pi * c / columns, 0.805)
+    grid = [on_globe(math.pi * (r + 1) / (rows + 1) - math.pi / 2, 2 * math.pi * c / columns, 0.82)
             for r in range(rows) for c in range(columns)]
     edges = []
     for r in range(rows):
@@ -394,14 +394,14 @@ def lines():
     turn = math.pi * (3 - math.sqrt(5))  # the golden angle
     spiral = [on_globe(math.asin(2 * (i + 0.5) / 3000 - 1), turn * i, 0.8) for i in range(3000)]
     cloud = doc.strokes("cloud", 0, spiral, clay, normals=[unit(p) for p in spiral])
-    doc.node("cloud", translation=[1.95, 1.1, 0.2], mesh=cloud)
+    doc.node("cloud", translation=[1.85, 1.1, 0.2], mesh=cloud)
     stars = [[math.sqrt(i / 1500) * math.cos(turn * i), math.sqrt(i / 1500) * math.sin(turn * i), 0]
              for i in range(1, 1501)]
     doc.node("stars", translation=[0.2, 2.9, -2.5], scale=[2.4, 0.7, 1], mesh=doc.strokes(
         "stars", 0, stars, white, [rainbow(i / 1500) for i in range(1, 1501)]))
     doc.light("sun", "directional", (1, 0.95, 0.87), 8.0, [4, 7, 6], [0, 0, 0])
     doc.light("sky", "directional", (0.74, 0.85, 1), 2.8, [-4, 3, 5], [0, 0, 0])
-    doc.camera("main", [0.2, 2.1, 6.4], [0.05, 1.45, 0], 36)
+    doc.camera("main", [0.2, 2.1, 7.0], [0, 1.45, 0], 36)
     return doc
 
 

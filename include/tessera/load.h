@@ -17,7 +17,7 @@ namespace tessera {
 
 struct LoadOptions {
     std::uint64_t max_bytes = std::uint64_t{1} << 30;      // memory that the scene may take
-    std::uint64_t max_triangles = std::uint64_t{1} << 24;  // drawn triangles, instances counted
+    std::uint64_t max_triangles = std::uint64_t{1} << 24;  // drawn, lines and points too; instances counted
     std::uint64_t max_nodes = std::uint64_t{1} << 22;
     std::uint64_t max_pixels = std::uint64_t{1} << 26;  // of one picture
     int threads = 0;                                    // for decoding pictures; 0: what the process may use

@@ -47,16 +47,17 @@ float next_float(float value, bool up) {
     return std::bit_cast<float>((value > 0) == up ? bits + 1 : bits - 1);
 }
 
-// The x of clip space that snaps to `target`, or the y where `sign` is -1. Rounding alone may miss it by one, at the
-// far side of large pictures.
-float unsnap(std::int32_t target, float w, float pixels, double sign) {
-    const double half = 128.0 * static_cast<double>(pixels);
-    auto value = static_cast<float>(sign * (target - half) / half * static_cast<double>(w));
+// The x (or the y) of clip space that snaps to `target`. Rounding alone may miss it by one, at the far side of large
+// pictures.
+template <bool kX>
+float unsnap(std::int32_t target, float w, float pixels) {
+    const double half = 128.0 * static_cast<double>(pixels), aside = kX ? target - half : half - target;
+    auto value = static_cast<float>(aside / half * static_cast<double>(w));
     for (int step = 0; step < 8; ++step) {
         const PictureVertex<float> p = to_picture(ClipVertex<float>{value, value, 0, w}, pixels, pixels);
-        const std::int32_t snapped = sign > 0 ? p.snapped_x : p.snapped_y;
+        const std::int32_t snapped = kX ? p.snapped_x : p.snapped_y;
         if (snapped == target) break;
-        value = next_float(value, (snapped < target) == (sign > 0));
+        value = next_float(value, (snapped < target) == kX);
     }
     return value;
 }
@@ -127,6 +128,13 @@ struct StrokeMesh::End {
     End(const ClipVertex<float>& v, std::uint32_t vertex)
         : clip{v.x, v.y, v.z, v.w}, at{}, third(0), source{vertex, vertex, 0} {}
 
+    float w(const StrokeSpace& space) const { return space.orthographic ? 1.0f : third; }
+    float x(const StrokeSpace& space, std::int32_t aside) const {
+        return unsnap<true>(at.x + aside, w(space), space.width);
+    }
+    float y(const StrokeSpace& space, std::int32_t aside) const {
+        return unsnap<false>(at.y + aside, w(space), space.height);
+    }
     // False where it can be nowhere.
     bool place(const StrokeSpace& space) {
         const ClipVertex<float> v{static_cast<float>(clip.x), static_cast<float>(clip.y), static_cast<float>(clip.z),
@@ -149,9 +157,8 @@ ClipVertex<float> StrokeMesh::clip_vertex(std::uint32_t vertex) const {
     return to_clip(instance_->object_to_clip, p[0], p[1], p[2]);
 }
 
-void StrokeMesh::add_vertex(PictureOffset at, const End& end, const StrokeSpace& space) {
-    const float w = space.orthographic ? 1.0f : end.third;
-    const Vec3 p{unsnap(at.x, w, space.width, 1), unsnap(at.y, w, space.height, -1), end.third};
+void StrokeMesh::add_vertex(float x, float y, const End& end) {
+    const Vec3 p{x, y, end.third};
     bounds.add(p);
     positions_.insert(positions_.end(), {p.x, p.y, p.z});
     const Source& s = end.source;
@@ -185,7 +192,16 @@ void StrokeMesh::add_point(std::uint32_t element, std::uint32_t vertex, const St
         static_cast<float>(low.y) > 256 * space.height)
         return;
     const auto first = static_cast<std::uint32_t>(positions_.size() / 3);
-    for (const PictureOffset& c : space.corners) add_vertex({end.at.x + c.x, end.at.y + c.y}, end, space);
+    if (space.corners.size() == 4) {  // most often: a square, whose corners share coordinates
+        const float x[2] = {end.x(space, space.corners[0].x), end.x(space, space.corners[2].x)};
+        const float y[2] = {end.y(space, space.corners[0].y), end.y(space, space.corners[2].y)};
+        add_vertex(x[0], y[0], end);
+        add_vertex(x[0], y[1], end);
+        add_vertex(x[1], y[1], end);
+        add_vertex(x[1], y[0], end);
+    } else {
+        for (const PictureOffset& c : space.corners) add_vertex(end.x(space, c.x), end.y(space, c.y), end);
+    }
     for (std::uint32_t i = 1; i + 1 < space.corners.size(); ++i) add_triangle(first, first + i, first + i + 1);
     elements_.push_back(element);
 }
@@ -213,10 +229,13 @@ void StrokeMesh::add_segment(std::uint32_t element, std::uint32_t from, std::uin
         static_cast<float>(std::min(a.at.y, b.at.y) + low.y) > 256 * space.height)
         return;
     const auto first = static_cast<std::uint32_t>(positions_.size() / 3);
-    add_vertex({a.at.x + low.x, a.at.y + low.y}, a, space);
-    add_vertex({a.at.x + high.x, a.at.y + high.y}, a, space);
-    add_vertex({b.at.x + high.x, b.at.y + high.y}, b, space);
-    add_vertex({b.at.x + low.x, b.at.y + low.y}, b, space);
+    for (const End* end : {&a, &b}) {
+        const float x = end->x(space, low.x), y = end->y(space, low.y);
+        const float far_x = x_major ? x : end->x(space, high.x), far_y = x_major ? end->y(space, high.y) : y;
+        const bool second = end == &b;  // around the parallelogram
+        add_vertex(second ? far_x : x, second ? far_y : y, *end);
+        add_vertex(second ? x : far_x, second ? y : far_y, *end);
+    }
     const std::uint32_t turned = (x_major ? dx < 0 : dy > 0) ? 1 : 0;  // so that a viewer sees all fronts
     add_triangle(first, first + 1 + turned, first + 2 - turned);
     add_triangle(first, first + 2 + turned, first + 3 - turned);

@@ -64,7 +64,7 @@ class StrokeMesh : public DrawnMesh {
     void clear();
     void add_point(std::uint32_t element, std::uint32_t vertex, const StrokeSpace& space);
     void add_segment(std::uint32_t element, std::uint32_t from, std::uint32_t to, const StrokeSpace& space);
-    void add_vertex(PictureOffset at, const End& end, const StrokeSpace& space);
+    void add_vertex(float x, float y, const End& end);
     void add_triangle(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
         triangles_.insert(triangles_.end(), {a, b, c});
     }

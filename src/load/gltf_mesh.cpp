@@ -229,7 +229,7 @@ std::uint64_t count_triangles(const GltfDocument& document, const Json& mesh) {
         if (const std::optional<Json> indices = json.find("indices")) counted = indices;
         const int accessor = counted->reference(document.size(GltfArray::kAccessors), "accessor");
         sum = saturating_sum(
-            sum, triangle_count(read_mode(json), accessor_count(document, static_cast<std::size_t>(accessor))));
+            sum, element_count(read_mode(json), accessor_count(document, static_cast<std::size_t>(accessor))));
     });
     return sum;
 }

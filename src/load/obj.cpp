@@ -184,6 +184,7 @@ class ObjBuilder {
         const std::int32_t material = text_.parts[part].material;
         p.material = materials_[static_cast<std::size_t>(material + 1)];
         const bool surface = p.mode == PrimitiveMode::kTriangles;
+        if (!surface && material < 0) p.material = kNone;  // the ink that is seen on any background
         bool textured = false;
         for (std::size_t i = first_element_[part]; i < first_element_[part + 1]; ++i)
             for (std::uint32_t c = 0; c < text_.elements[i].corner_count; ++c)

@@ -158,10 +158,8 @@ class ObjReader {
         if (e.corner_count < least) return warn_once("elements of too few vertices are not drawn");
         e.part = part(mode);
         ++out_.parts[e.part].elements;
-        if (mode == PrimitiveMode::kTriangles) {
-            triangles_ += e.corner_count - 2;
-            count_triangles(context_, triangles_, text_.place());
-        }
+        triangles_ += e.corner_count - (mode == PrimitiveMode::kTriangles ? 2 : mode == PrimitiveMode::kLines ? 1 : 0);
+        count_triangles(context_, triangles_, text_.place());
         append(context_, out_.elements, e);
     }
 

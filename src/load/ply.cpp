@@ -349,6 +349,9 @@ void add_parts(LoadContext& context, Scene& scene, const SceneFiles& files, cons
                                                          pictures)
                                            : plain_material());
         if (!p.colors.empty()) scene.materials.back().base_color = {1, 1, 1, 1};
+        // Bare points and lines take the ink that is seen on any background.
+        if (p.mode != PrimitiveMode::kTriangles && p.colors.empty() && p.normals.empty() && !textured)
+            p.material = kNone;
         whole.primitives.push_back(std::move(p));
     }
     if (whole.primitives.empty()) scene.materials.push_back(plain_material());

@@ -1,4 +1,4 @@
-// How many triangles a primitive draws.
+// How many triangles, lines or points a primitive draws.
 #pragma once
 
 #include <tessera/scene.h>
@@ -18,6 +18,22 @@ constexpr std::uint64_t triangle_count(PrimitiveMode mode, std::uint64_t vertice
             return vertices < 3 ? 0 : vertices - 2;
         default:
             return 0;
+    }
+}
+
+// Points and lines, too.
+constexpr std::uint64_t element_count(PrimitiveMode mode, std::uint64_t vertices) {
+    switch (mode) {
+        case PrimitiveMode::kPoints:
+            return vertices;
+        case PrimitiveMode::kLines:
+            return vertices / 2;
+        case PrimitiveMode::kLineLoop:
+            return vertices < 2 ? 0 : vertices;
+        case PrimitiveMode::kLineStrip:
+            return vertices < 2 ? 0 : vertices - 1;
+        default:
+            return triangle_count(mode, vertices);
     }
 }
 
