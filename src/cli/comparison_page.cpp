@@ -84,10 +84,11 @@ const char* media_type(const std::vector<std::byte>& file) {
 std::string verdict_text(const Comparison& c) {
     const auto figures = [&] {
         if (c.pixels == 0) return std::string();
+        const std::string unit = c.floating ? "" : "/255";
         const double share = 100 * static_cast<double>(c.differing_pixels) / static_cast<double>(c.pixels);
         std::string text = ": " + std::to_string(c.differing_pixels) + " of " + std::to_string(c.pixels) + " pixels (" +
-                           shown(share, "%.3g") + " %), largest error " + shown(c.max_error, "%.4g") + "/255, mean " +
-                           shown(c.mean_error, "%.4g") + "/255";
+                           shown(share, "%.3g") + " %), largest error " + shown(c.max_error, "%.4g") + unit +
+                           ", mean " + shown(c.mean_error, "%.4g") + unit;
         if (c.psnr) text += ", PSNR " + shown(*c.psnr, "%.2f") + " dB";
         return text;
     };

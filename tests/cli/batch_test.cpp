@@ -142,7 +142,7 @@ TEST_F(CliBatch, BEY3_AFailedSceneIsReportedAndTheRestGoesOn) {
             std::snprintf(hash, sizeof hash, "%016llx",
                           static_cast<unsigned long long>(tessera::hash_pixels(
                               tessera::read_image(std::string(std::string_view(picture["file"]))))));
-            EXPECT_EQ(std::string_view(picture["color_hash"]), hash);
+            EXPECT_EQ(std::string_view(picture["hash"]), hash);
         }
     }
     EXPECT_TRUE(found);
@@ -174,6 +174,41 @@ TEST_F(CliBatch, BEY3_CamerasByNameAndAll) {
     ASSERT_EQ(batch(base + Strings{"1,front/left"}).code, 0);
     EXPECT_EQ(tree(in_folder("out")), all);
     EXPECT_EQ(batch(base + Strings{"1,back"}).code, 2);
+    // Two names that become one in a file's name.
+    std::string alike = cameras;
+    alike.insert(alike.find("{\"type\":\"perspective\",\"perspective\":{\"yfov\":0.9") + 1, "\"name\":\"front_left\",");
+    std::ofstream(folder_ / "c.gltf") << alike;
+    const Outcome run = batch(base + Strings{"all"});
+    EXPECT_EQ(run.code, 2);
+    EXPECT_NE(run.err.find("c_front_left.png' would be written twice"), std::string::npos) << run.err;
+}
+
+TEST_F(CliBatch, BEY3_PlanesAndPosesAreThoseOfRender) {
+    std::ofstream(folder_ / "poses.json")
+        << R"({"convention":"opengl","cameras":[{"name":"a","camera_to_world":[[1,0,0,0],[0,1,0,1],[0,0,1,6],[0,0,0,1]]},
+        {"name":"b","camera_to_world":[[1,0,0,1],[0,1,0,1],[0,0,1,5],[0,0,0,1]]}]})";
+    const Strings planes{"--aov", "depth,node,motion", "--poses", in_folder("poses.json"), "--frames", "3-4"};
+    ASSERT_EQ(batch(Strings{scene("motion.gltf"), "-o", in_folder("out/{camera}_{frame}_{aov}.npy")} + planes).code, 0);
+    const Files files = tree(in_folder("out"));
+    EXPECT_EQ(files.size(), 2u * 2 * 3);
+    fs::create_directories(folder_ / "single");
+    ASSERT_EQ(run_command(Strings{"render", scene("motion.gltf"), "-s", "48x32", "--samples", "1", "-o",
+                                  in_folder("single/{camera}_{frame}_{aov}.npy")} +
+                          planes)
+                  .code,
+              0);
+    EXPECT_EQ(tree(in_folder("single")), files);
+    // One of the planes is missing: it alone is written again.
+    std::ofstream(folder_ / "out/a_3_node.npy") << "mine";
+    fs::remove(folder_ / "out/a_3_depth.npy");
+    ASSERT_EQ(
+        batch(Strings{scene("motion.gltf"), "--skip-existing", "-o", in_folder("out/{camera}_{frame}_{aov}.npy")} +
+              planes)
+            .code,
+        0);
+    EXPECT_EQ(read_file(in_folder("out/a_3_node.npy")), "mine");
+    EXPECT_EQ(read_file(in_folder("out/a_3_depth.npy")), files.at("a_3_depth.npy"));
+    EXPECT_EQ(batch(Strings{scene("motion.gltf"), "-o", in_folder("out/{frame}_{aov}.npy")} + planes).code, 2);
 }
 
 TEST_F(CliBatch, BEY3_NothingDependsOnThreadsOrScenesInFlight) {

@@ -6,6 +6,7 @@
 
 #include <simdjson.h>
 
+#include <cstring>
 #include <span>
 
 namespace {
@@ -108,6 +109,32 @@ TEST_F(CliComparison, BEY1_JpegsAreComparedAsWritten) {
     EXPECT_EQ(batch(jpeg + Strings{"--reference", in_folder("jref")}).code, 0);
     EXPECT_EQ(
         batch(Strings{"-o", in_folder("j/{model}.jpg"), "--quality", "20", "--reference", in_folder("jref")}).code, 3);
+}
+
+TEST_F(CliComparison, BEY1_ArraysAreComparedInTheirOwnUnit) {
+    const Strings depth{"-o", in_folder("d/{model}.npy"), "--aov", "depth", "--report", in_folder("run.json")};
+    ASSERT_EQ(batch(depth).code, 0);
+    fs::rename(folder_ / "d", folder_ / "dref");
+    const Strings compared = depth + Strings{"--reference", in_folder("dref")};
+    ASSERT_EQ(batch(compared).code, 0);
+    // The last of the values of the first scene, a quarter of a metre nearer.
+    std::string file = read_file(in_folder("dref/cornell-box.npy"));
+    float value = 0;
+    std::size_t at = file.size();
+    do {
+        at -= 4;
+        std::memcpy(&value, file.data() + at, 4);
+    } while (!(value < 100));
+    const float moved = value - 0.25f;
+    std::memcpy(file.data() + at, &moved, 4);
+    std::ofstream(in_folder("dref/cornell-box.npy"), std::ios::binary) << file;
+    EXPECT_EQ(batch(compared).code, 3);
+    const auto comparison = picture(0)["comparison"];
+    EXPECT_EQ(std::string_view(comparison["verdict"]), "different");
+    EXPECT_EQ(std::string_view(comparison["unit"]), "1");
+    EXPECT_EQ(std::uint64_t(comparison["differing_pixels"]), 1u);
+    EXPECT_NEAR(double(comparison["max_error"]), 0.25, 1e-6);
+    EXPECT_EQ(batch(compared + Strings{"--tolerance", "0.26"}).code, 0);
 }
 
 TEST_F(CliComparison, BEY1_EveryKindOfDifferenceHasItsName) {
