@@ -28,8 +28,11 @@ void parse_cameras(const std::string& text, BatchJob& job) {
 void parse_pattern(const std::string& pattern, BatchJob& job) {
     if (pattern.empty()) refuse("--output", "say where the pictures go, as in out/{model}.png");
     if (pattern == "-") refuse("--output", "a batch writes files, not to stdout");
+    for (const Pose& pose : job.render.poses) job.cameras.push_back(pose.name);
     if ((job.cameras.size() > 1 || job.every_camera) && !has_place(pattern, "camera"))
         refuse("--output", "several cameras need {camera} in the names");
+    if (job.render.codec == Codec::kVideo && !job.render.frames)
+        refuse("--output", "a video needs --frames or --turntable");
     job.pattern = pattern;
 }
 
@@ -66,7 +69,7 @@ void add_batch_options(CLI::App& app, BatchArguments& a) {
     option(
         "Input and output", "-o,--output", a.render.output, "PATTERN",
         "names of the pictures: {model} (name of the scene's file), {path} (with its folders), {folder}, {extension}, "
-        "{camera}, {frame:04}, {aov}; .png, .jpg or .jpeg, or .mp4, .mov, .mkv, .webm or .gif for videos");
+        "{camera}, {frame:04}, {aov}; files and videos as render writes them");
     app.add_flag("--skip-existing", a.skip_existing, "leave out pictures that are there already")
         ->group("Input and output");
     option("Input and output", "--report", a.report, "FILE", "say what happened, as JSON (- for stdout)");

@@ -16,6 +16,11 @@
 namespace tessera::cli {
 namespace {
 
+void check_report(const std::string& file) {
+    if (file != "-") make_folders_of(file);
+    check_writable(file);
+}
+
 // What can be known to be in vain before anything is drawn.
 void check_outputs(const BatchJob& job, const std::vector<SceneFile>& scenes) {
     check_names(job, scenes);
@@ -23,11 +28,11 @@ void check_outputs(const BatchJob& job, const std::vector<SceneFile>& scenes) {
     make_folders_of(folder);
     check_writable(folder + "x");
     if (job.render.codec == Codec::kVideo) find_ffmpeg(job.pattern);
-    if (!job.report.empty()) check_writable(job.report);
+    if (!job.report.empty()) check_report(job.report);
     if (!job.reference) return;
     if (!is_folder(job.reference->folder))
         throw Error(ErrorCode::kInput, "--reference: is not a folder", job.reference->folder);
-    check_writable(job.page);
+    check_report(job.page);
 }
 
 int run(const CLI::App& app, const BatchArguments& arguments) {

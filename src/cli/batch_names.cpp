@@ -24,16 +24,24 @@ std::string fixed_folder(const std::string& pattern) {
     return fill_pattern("--output", front.substr(0, front.find_last_of('/') + 1), {});
 }
 
-std::string output_name(const BatchJob& job, const SceneFile& scene, const std::string& camera,
-                        std::optional<long> frame) {
+std::vector<std::string> output_names(const BatchJob& job, const SceneFile& scene, const std::string& camera,
+                                      std::optional<long> frame) {
     const std::string above = "../";
     if ((scene.path + "/").find(above) == 0 && (has_place(job.pattern, "path") || has_place(job.pattern, "folder")))
         refuse("--output",
                "{path} and {folder} of " + scene.file + " lead out of the folder; name the folder it is in instead");
-    PatternValues values{{"model", scene.model},         {"path", scene.path},          {"folder", scene.folder},
-                         {"extension", scene.extension}, {"camera", safe_name(camera)}, {"aov", std::string("color")}};
+    PatternValues values{{"model", scene.model},
+                         {"path", scene.path},
+                         {"folder", scene.folder},
+                         {"extension", scene.extension},
+                         {"camera", safe_name(camera)}};
     if (frame) values["frame"] = *frame;
-    return fill_pattern("--output", job.pattern, values);
+    std::vector<std::string> names;
+    for (const PlaneFile& file : job.render.planes.files) {
+        values["aov"] = file.aov;
+        names.push_back(fill_pattern("--output", job.pattern, values));
+    }
+    return names;
 }
 
 void check_names(const BatchJob& job, const std::vector<SceneFile>& scenes) {
@@ -52,8 +60,10 @@ void check_names(const BatchJob& job, const std::vector<SceneFile>& scenes) {
         for (const std::string& camera : cameras)
             for (std::uint64_t i = 0; i < (all ? pictures : 1); ++i) {
                 const auto frame = numbered ? std::optional(frames->first + static_cast<long>(i)) : std::nullopt;
-                const auto [owner, is_new] = owners.try_emplace(output_name(job, scenes[s], camera, frame), s);
-                if (!is_new) refuse_clash(owner->first, scenes[owner->second].file, scenes[s].file);
+                for (const std::string& name : output_names(job, scenes[s], camera, frame)) {
+                    const auto [owner, is_new] = owners.try_emplace(name, s);
+                    if (!is_new) refuse_clash(name, scenes[owner->second].file, scenes[s].file);
+                }
             }
 }
 

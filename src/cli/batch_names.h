@@ -16,9 +16,9 @@ struct BatchJob;
 // The folder in front of the first place of a pattern, with its slash: "out/" of "out/{model}.png"; "" without one.
 std::string fixed_folder(const std::string& pattern);
 
-// Throws kUsage for places that there are not.
-std::string output_name(const BatchJob& job, const SceneFile& scene, const std::string& camera,
-                        std::optional<long> frame);
+// A file for each that a picture has. Throws kUsage for places that there are not.
+std::vector<std::string> output_names(const BatchJob& job, const SceneFile& scene, const std::string& camera,
+                                      std::optional<long> frame);
 
 // Throws kUsage, naming both scenes, where two of the list would write one file. Cameras that only the scenes
 // know are left to Claims.

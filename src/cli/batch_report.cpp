@@ -25,7 +25,9 @@ void write(JsonWriter& json, const Comparison& c) {
     json.key("comparison").begin_object().member("verdict", name(c.verdict)).member("reference", c.reference);
     if (c.verdict <= Verdict::kDifferent) {
         json.member("pixels", c.pixels).member("differing_pixels", c.differing_pixels);
-        json.member("max_error", c.max_error).member("mean_error", c.mean_error);
+        json.member("unit", c.floating ? "1" : "1/255")
+            .member("max_error", c.max_error)
+            .member("mean_error", c.mean_error);
         json.key("psnr_db");
         c.psnr ? json.value(*c.psnr) : json.null();
     }
@@ -39,7 +41,7 @@ void write(JsonWriter& json, const PictureReport& p) {
     if (p.frame) json.member("frame", *p.frame);
     json.member("aov", p.aov);
     if (p.skipped) json.member("skipped", true);
-    if (!p.hash.empty()) json.member("color_hash", p.hash);
+    if (!p.hash.empty()) json.member("hash", p.hash);
     if (p.width > 0) json.member("width", p.width).member("height", p.height);
     if (p.comparison) write(json, *p.comparison);
     json.end_object();

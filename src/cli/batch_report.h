@@ -22,8 +22,9 @@ struct Comparison {
     std::string reference;   // the file that it was compared with
     std::string difference;  // the picture that was written of it; "" without
     std::uint64_t pixels = 0, differing_pixels = 0;
-    double max_error = 0, mean_error = 0;  // of 255
-    std::optional<double> psnr;            // dB; empty: infinite, or not known
+    bool floating = false;  // errors are in the values' own unit, not in 1/255
+    double max_error = 0, mean_error = 0;
+    std::optional<double> psnr;  // dB; empty: infinite, or not known
 
     bool failed() const { return verdict > Verdict::kWithin; }
 };
@@ -31,7 +32,7 @@ struct Comparison {
 struct PictureReport {
     std::string file, camera, aov;
     std::optional<long> frame;
-    std::string hash;  // color_hash: of the pixels; "" when it was skipped
+    std::string hash;  // hash_pixels() of its plane; "" when it was skipped, or has several
     int width = 0, height = 0;
     bool skipped = false;  // it was there already
     std::optional<Comparison> comparison;

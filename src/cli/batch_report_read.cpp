@@ -59,6 +59,7 @@ class Reader {
         if (c.verdict > Verdict::kDifferent) return c;
         c.pixels = get<std::uint64_t>(e, "pixels");
         c.differing_pixels = get<std::uint64_t>(e, "differing_pixels");
+        c.floating = text(e, "unit") == "1";
         c.max_error = get<double>(e, "max_error");
         c.mean_error = get<double>(e, "mean_error");
         if (!e["psnr_db"].is_null()) c.psnr = get<double>(e, "psnr_db");
@@ -68,7 +69,7 @@ class Reader {
     PictureReport picture(const element& e) const {
         PictureReport p;
         p.file = text(e, "file"), p.aov = text(e, "aov");
-        p.camera = text_or(e, "camera"), p.hash = text_or(e, "color_hash");
+        p.camera = text_or(e, "camera"), p.hash = text_or(e, "hash");
         p.skipped = get_or(e, "skipped", false);
         if (!e["frame"].error()) p.frame = static_cast<long>(get<std::int64_t>(e, "frame"));
         if (!e["width"].error()) {

@@ -64,8 +64,7 @@ class Run {
             std::max<std::uint64_t>(1, job_.render.render.max_bytes / static_cast<std::uint64_t>(workers_));
         for (std::size_t number; take(number, share.threads);) {
             SceneReport report = worker.run(scenes_[number], number, share);
-            const bool too_large = report.exit_code == kLimitReached && workers_ > 1;
-            finish(std::move(report), too_large);
+            finish(std::move(report), worker.hit_limit() && workers_ > 1);
         }
     }
 

@@ -1,7 +1,8 @@
 #include "cli/batch_scene.h"
 
 #include "cli/files.h"
-#include "cli/picture_file.h"
+#include "cli/parse.h"
+#include "cli/planes.h"
 #include "cli/scene_input.h"
 #include "cli/scene_setup.h"
 #include "cli/stopwatch.h"
@@ -15,6 +16,8 @@
 #include <cstdio>
 #include <exception>
 #include <new>
+#include <set>
+#include <string_view>
 #include <utility>
 
 namespace tessera::cli {
@@ -56,7 +59,9 @@ SceneReport SceneWorker::run(const SceneFile& file, std::uint64_t number, const 
         report.status = SceneStatus::kFailed;
         report.exit_code = exit_code(code);
         report.error = line;
+        hit_limit_ = code == ErrorCode::kLimit;
     };
+    hit_limit_ = false;
     try {
         run_outputs(file, share, report);
     } catch (const Error& error) {
@@ -73,20 +78,25 @@ SceneReport SceneWorker::run(const SceneFile& file, std::uint64_t number, const 
     return report;
 }
 
+bool SceneWorker::Output::complete() const {
+    return std::none_of(missing.begin(), missing.end(), [](bool m) { return m; });
+}
+
 void SceneWorker::run_outputs(const SceneFile& file, const SceneShare& share, SceneReport& report) {
     std::vector<Output> outputs;
     if (!job_.every_camera) outputs = plan(file, job_.cameras, report.number);
     const auto nothing_to_do = [&] {
-        return std::all_of(outputs.begin(), outputs.end(), [](const Output& o) { return o.exists; });
+        return std::all_of(outputs.begin(), outputs.end(), [](const Output& o) { return o.complete(); });
     };
     if (!job_.every_camera && nothing_to_do()) {
         report.status = SceneStatus::kSkipped;
-        for (const Output& output : outputs) add_existing(output, report);
+        for (const Output& output : outputs)
+            for (std::size_t i = 0; i < output.files.size(); ++i) add_existing(output, i, report);
         return;
     }
 
     RenderJob job = job_.render;
-    job.load.threads = job.render.threads = share.threads;
+    job.load.threads = job.render.threads = job.planes.encode.png.threads = share.threads;
     job.load.max_bytes = share.scene_bytes, job.render.max_bytes = share.frame_bytes;
     const Stopwatch watch;
     if (job.timeout) job.render.cancel = [watch, limit = 1000 * *job.timeout] { return watch.milliseconds() > limit; };
@@ -94,95 +104,118 @@ void SceneWorker::run_outputs(const SceneFile& file, const SceneShare& share, Sc
     report.load_ms = watch.milliseconds();
     if (job.render.cancel && job.render.cancel()) throw Error(ErrorCode::kCancelled, "");
     set_up(job, scene);
+    std::vector<std::string> cameras = job_.cameras;
     if (job_.every_camera) {
-        const std::vector<std::string> cameras = cameras_of(scene);
+        cameras = cameras_of(scene);
         if (cameras.empty()) throw Error(ErrorCode::kUsage, "--camera: the scene has no cameras");
         outputs = plan(file, cameras, report.number);
         if (nothing_to_do()) report.status = SceneStatus::kSkipped;
     }
-    for (Output& output : outputs) {
-        output.view = job.render.view;
-        if (!output.camera.empty()) output.view.camera = find_camera(scene, output.camera);
-        if (output.frame) output.view = job.frames->view(output.view, *output.frame);
-    }
+    // Poses are the file's, and turned already.
+    if (job.poses.empty())
+        for (const std::string& camera : cameras) {
+            job.poses.push_back({camera, job.render.view});
+            job.poses.back().view.camera = find_camera(scene, camera);
+        }
     report.warnings = scene.warnings;
     draw(job, scene, outputs, report);
 }
 
+SceneWorker::Output SceneWorker::plan_one(const SceneFile& file, long shot, const std::string& camera,
+                                          std::optional<long> frame) {
+    Output output;
+    output.shot = shot, output.camera = camera, output.frame = frame;
+    output.files = output_names(job_, file, camera, frame);
+    for (const std::string& name : output.files) {
+        shared_.claims.claim(name, file.file);
+        shared_.stale.remove(name);
+        output.missing.push_back(!job_.skip_existing || !exists(name));
+    }
+    return output;
+}
+
+// In the order of the ShotList.
 std::vector<SceneWorker::Output> SceneWorker::plan(const SceneFile& file, const std::vector<std::string>& cameras,
                                                    std::uint64_t number) {
+    const std::vector<std::string> names = cameras.empty() ? std::vector<std::string>{"default"} : cameras;
     const std::optional<Frames>& frames = job_.render.frames;
-    const bool numbered = frames && job_.render.codec != Codec::kVideo;
+    const bool video = job_.render.codec == Codec::kVideo;
+    const long numbered = frames && !video ? frames->count() : 1;
+    const auto columns = static_cast<long>(names.size());
     std::vector<Output> outputs;
-    const auto add = [&](const std::string& camera, std::optional<long> frame) {
-        Output output;
-        output.file = output_name(job_, file, camera.empty() ? "default" : camera, frame);
-        output.camera = camera, output.frame = frame;
-        shared_.claims.claim(output.file, file.file);
-        shared_.stale.remove(output.file);
-        output.exists = job_.skip_existing && exists(output.file);
-        outputs.push_back(std::move(output));
-    };
-    for (const std::string& camera : cameras.empty() ? std::vector<std::string>{""} : cameras) {
-        if (!numbered) {
-            add(camera, std::nullopt);
-            continue;
-        }
-        for (long frame = frames->first; frame <= frames->last; ++frame)
-            if (!job_.shard_frames || job_.shard.has(number + static_cast<std::uint64_t>(frame - frames->first)))
-                add(camera, frame);
+    for (long i = 0; i < numbered; ++i) {
+        if (job_.shard_frames && !job_.shard.has(number + static_cast<std::uint64_t>(i))) continue;
+        for (long c = 0; c < columns; ++c)
+            outputs.push_back(plan_one(file, i * columns + c, names[static_cast<std::size_t>(c)],
+                                       frames && !video ? std::optional(frames->first + i) : std::nullopt));
     }
+    // Names of cameras may become one when they are made fit for files.
+    std::set<std::string_view> different;
+    for (const Output& output : outputs)
+        for (const std::string& name : output.files)
+            if (!different.insert(name).second) refuse("--output", "'" + name + "' would be written twice");
     return outputs;
 }
 
-void SceneWorker::draw(RenderJob& job, const Scene& scene, const std::vector<Output>& outputs, SceneReport& report) {
+void SceneWorker::draw(const RenderJob& job, const Scene& scene, const std::vector<Output>& outputs,
+                       SceneReport& report) {
+    const ShotList shots(job);
     std::optional<Renderer> renderer;
     for (const Output& output : outputs) {
-        if (output.exists) {
-            add_existing(output, report);
-            continue;
-        }
+        for (std::size_t i = 0; i < output.files.size(); ++i)
+            if (!output.missing[i]) add_existing(output, i, report);
+        if (output.complete()) continue;
         const Stopwatch watch;
         const bool first = !renderer;
         if (first) renderer.emplace(scene, job.render);
-        PictureReport picture;
-        picture.file = output.file, picture.camera = output.camera, picture.frame = output.frame, picture.aov = "color";
-        make_folders_of(output.file);
         if (job.codec == Codec::kVideo) {
-            write_video(job, *renderer, output, picture, report);
+            write_video(job, shots, *renderer, output, report);
         } else {
-            const Moment moment =
-                output.frame ? job.frames->moment(job.render.moment, *output.frame) : job.render.moment;
-            renderer->draw(output.view, moment, planes_);
+            const PlannedShot shot = shots.at(output.shot);
+            renderer->draw(shot.now, shot.before, shot.after, planes_);
             report.render_ms += watch.milliseconds();
-            write_picture(job, output, picture, report);
+            write_picture(job, output, report);
         }
         if (first) report.warnings.insert(report.warnings.end(), planes_.warnings.begin(), planes_.warnings.end());
-        report.pictures.push_back(std::move(picture));
     }
 }
 
-void SceneWorker::write_picture(const RenderJob& job, const Output& output, PictureReport& picture,
-                                SceneReport& report) {
+void SceneWorker::write_picture(const RenderJob& job, const Output& output, SceneReport& report) {
     const Stopwatch watch;
-    finish_color(job, planes_);
-    picture.hash = hash_text(planes_.stats.color_hash);
-    picture.width = planes_.color.width(), picture.height = planes_.color.height();
-    const std::vector<std::byte> file = encode_color(job, planes_);
-    write_output(output.file, file);
-    compare(picture, file);
+    finish_color(job.planes, planes_);
+    for (std::size_t i = 0; i < output.files.size(); ++i) {
+        if (!output.missing[i]) continue;
+        const PlaneFile& planes = job.planes.files[i];
+        const Image& plane = plane_of(planes.planes.front(), planes_);
+        PictureReport picture;
+        picture.file = output.files[i], picture.aov = planes.aov;
+        picture.camera = output.camera, picture.frame = output.frame;
+        picture.width = plane.width(), picture.height = plane.height();
+        if (planes.planes.size() == 1)
+            picture.hash = hash_text(&plane == &planes_.color ? planes_.stats.color_hash : hash_pixels(plane));
+        const std::vector<std::byte> file = encode_planes(job.planes, planes, planes_);
+        make_folders_of(picture.file);
+        write_output(picture.file, file);
+        compare(picture, file);
+        report.pictures.push_back(std::move(picture));
+    }
     report.encode_ms += watch.milliseconds();
 }
 
-void SceneWorker::write_video(const RenderJob& job, Renderer& renderer, const Output& output, PictureReport& picture,
+void SceneWorker::write_video(const RenderJob& job, const ShotList& shots, Renderer& renderer, const Output& output,
                               SceneReport& report) {
     const Stopwatch watch;
-    Video video(output.file, {job.frames->fps, !job.render.background}, job.render.cancel);
+    PictureReport picture;
+    picture.file = output.files.front(), picture.camera = output.camera, picture.aov = "color";
+    make_folders_of(picture.file);
+    Video video(picture.file, {job.fps, !job.render.background}, job.render.cancel);
     double encoding = 0;
-    for (long frame = job.frames->first; frame <= job.frames->last; ++frame) {
-        renderer.draw(job.frames->view(output.view, frame), job.frames->moment(job.render.moment, frame), planes_);
+    const auto cameras = static_cast<long>(std::max<std::size_t>(job.poses.size(), 1));
+    for (long i = output.shot; i < shots.count(); i += cameras) {
+        const PlannedShot shot = shots.at(i);
+        renderer.draw(shot.now, shot.before, shot.after, planes_);
         const Stopwatch encoder;
-        finish_color(job, planes_);
+        finish_color(job.planes, planes_);
         video.add(planes_.color);
         encoding += encoder.milliseconds();
     }
@@ -192,14 +225,16 @@ void SceneWorker::write_video(const RenderJob& job, Renderer& renderer, const Ou
     encoding += encoder.milliseconds();
     report.encode_ms += encoding;
     report.render_ms += watch.milliseconds() - encoding;
+    report.pictures.push_back(std::move(picture));
 }
 
 // What is there already is compared, too.
-void SceneWorker::add_existing(const Output& output, SceneReport& report) {
+void SceneWorker::add_existing(const Output& output, std::size_t file, SceneReport& report) {
     PictureReport picture;
-    picture.file = output.file, picture.camera = output.camera, picture.frame = output.frame, picture.aov = "color";
+    picture.file = output.files[file], picture.camera = output.camera, picture.frame = output.frame;
+    picture.aov = job_.render.planes.files[file].aov;
     picture.skipped = true;
-    if (job_.reference) compare(picture, read_file(output.file));
+    if (job_.reference) compare(picture, read_file(picture.file));
     report.pictures.push_back(std::move(picture));
 }
 

@@ -6,12 +6,15 @@
 #include "cli/batch_names.h"
 #include "cli/batch_report.h"
 #include "cli/scene_list.h"
+#include "cli/shots.h"
 #include "cli/temporary_file.h"
 
 #include <tessera/renderer.h>
 
-#include <chrono>
+#include <cstddef>
+#include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -37,28 +40,35 @@ class SceneWorker {
     // Never throws for what is wrong with the scene or its pictures: the report says it. `number` is its place in the
     // list of all shards.
     SceneReport run(const SceneFile& scene, std::uint64_t number, const SceneShare& share);
+    // Whether the latest one failed at a limit, which may have been that of its share.
+    bool hit_limit() const { return hit_limit_; }
 
   private:
-    // A file to write: a picture, or a video of all frames.
+    // A picture with its files, one for each plane; or a video, with its one file.
     struct Output {
-        std::string file, camera;
+        long shot = 0;       // in the ShotList; of a video the first one
+        std::string camera;  // as in the list
         std::optional<long> frame;
-        View view;
-        bool exists = false;
+        std::vector<std::string> files;
+        std::vector<bool> missing;
+
+        bool complete() const;
     };
 
     void run_outputs(const SceneFile& file, const SceneShare& share, SceneReport& report);
     std::vector<Output> plan(const SceneFile& file, const std::vector<std::string>& cameras, std::uint64_t number);
-    void draw(RenderJob& job, const Scene& scene, const std::vector<Output>& outputs, SceneReport& report);
-    void write_picture(const RenderJob& job, const Output& output, PictureReport& picture, SceneReport& report);
-    void write_video(const RenderJob& job, Renderer& renderer, const Output& output, PictureReport& picture,
+    Output plan_one(const SceneFile& file, long shot, const std::string& camera, std::optional<long> frame);
+    void draw(const RenderJob& job, const Scene& scene, const std::vector<Output>& outputs, SceneReport& report);
+    void write_picture(const RenderJob& job, const Output& output, SceneReport& report);
+    void write_video(const RenderJob& job, const ShotList& shots, Renderer& renderer, const Output& output,
                      SceneReport& report);
-    void add_existing(const Output& output, SceneReport& report);
+    void add_existing(const Output& output, std::size_t file, SceneReport& report);
     void compare(PictureReport& picture, std::span<const std::byte> written) const;
 
     BatchShared& shared_;
     const BatchJob& job_;
     RenderResult planes_;
+    bool hit_limit_ = false;
 };
 
 }  // namespace tessera::cli

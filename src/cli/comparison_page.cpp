@@ -23,7 +23,7 @@ h3 { font-size: 1rem; margin: 0 0 .3rem; overflow-wrap: anywhere; }
 .bad { color: var(--bad); } .good { color: var(--good); }
 section, details { border-top: 1px solid var(--line); padding: 1rem 0; }
 summary { cursor: pointer; font-weight: 600; }
-.row { display: grid; grid-template-columns: repeat(auto-fit, minmax(min(16rem, 100%), 1fr)); gap: 1rem; margin-top: .6rem; }
+.row { display: grid; grid-template-columns: repeat(auto-fill, minmax(min(16rem, 100%), 1fr)); gap: 1rem; margin-top: .6rem; }
 figure { margin: 0; } figcaption { font-size: .85rem; opacity: .75; }
 img { max-width: 100%; height: auto; border: 1px solid var(--line);
   background: repeating-conic-gradient(#bbb 0 25%, #ddd 0 50%) 0 0 / 16px 16px; }
@@ -84,10 +84,11 @@ const char* media_type(const std::vector<std::byte>& file) {
 std::string verdict_text(const Comparison& c) {
     const auto figures = [&] {
         if (c.pixels == 0) return std::string();
+        const std::string unit = c.floating ? "" : "/255";
         const double share = 100 * static_cast<double>(c.differing_pixels) / static_cast<double>(c.pixels);
         std::string text = ": " + std::to_string(c.differing_pixels) + " of " + std::to_string(c.pixels) + " pixels (" +
-                           shown(share, "%.3g") + " %), largest error " + shown(c.max_error, "%.4g") + "/255, mean " +
-                           shown(c.mean_error, "%.4g") + "/255";
+                           shown(share, "%.3g") + " %), largest error " + shown(c.max_error, "%.4g") + unit +
+                           ", mean " + shown(c.mean_error, "%.4g") + unit;
         if (c.psnr) text += ", PSNR " + shown(*c.psnr, "%.2f") + " dB";
         return text;
     };

@@ -129,6 +129,9 @@ BatchReport merge(const std::vector<std::string>& files, bool partial) {
     std::sort(whole.shards.begin(), whole.shards.end());
     std::erase_if(whole.options, [](const auto& option) { return is_of_the_shard(option.first); });
     join_scenes(whole);
+    if (missing.empty() && whole.scenes.size() != whole.list_scenes)
+        fail(files.front(), "its list has " + std::to_string(whole.list_scenes) + " scenes, the reports have " +
+                                std::to_string(whole.scenes.size()));
     return whole;
 }
 

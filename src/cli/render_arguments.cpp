@@ -72,7 +72,8 @@ void parse_animation(const RenderArguments& a, RenderJob& job) {
         if (has_place(a.output, "frame")) refuse("--output", "a video is one file: it has no {frame}");
         check_video(a.output, job.render.width, job.render.height, !job.render.background);
     } else if (a.output.empty() || a.output == "-" || !has_place(a.output, "frame")) {
-        refuse("--output", "must say where the number of the picture goes, as in frame_{frame:04}.png");
+        refuse("--output",
+               "with --frames or --turntable it must say where the number goes, as in frame_{frame:04}.png");
     }
 }
 

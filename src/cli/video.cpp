@@ -35,8 +35,8 @@ struct Format {
 };
 
 constexpr Format kFormats[] = {
-    {".mp4", "mp4", true, false, ""},          {".mov", "mov", true, false, ""}, {".mkv", "matroska", true, false, ""},
-    {".webm", "webm", true, true, "yuva420p"}, {".gif", "gif", false, true, ""},
+    {".mp4", "mp4", true, false, ""},           {".mov", "mov", true, false, ""}, {".mkv", "matroska", true, false, ""},
+    {".webm", "webm", false, true, "yuva420p"}, {".gif", "gif", false, true, ""},
 };
 
 const Format* format_of(const std::string& path) {

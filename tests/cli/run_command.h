@@ -19,6 +19,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -41,14 +42,16 @@ struct Outcome {
     }
 };
 
-inline Outcome run_command(const std::vector<std::string>& arguments, const std::string& input = {},
-                           const std::vector<std::string>& environment = {}, double limit_seconds = 60) {
+// `program` is a path.
+inline Outcome run_program(const std::string& program, const std::vector<std::string>& arguments,
+                           const std::string& input = {}, const std::vector<std::string>& environment = {},
+                           double limit_seconds = 60) {
     std::array<int, 2> out{}, err{};
     const std::filesystem::path input_file =
         std::filesystem::temp_directory_path() / ("tessera-input-" + std::to_string(::getpid()));
     std::ofstream(input_file, std::ios::binary) << input;
     if (::pipe(out.data()) != 0 || ::pipe(err.data()) != 0) throw std::runtime_error("pipe");
-    std::vector<char*> argv{const_cast<char*>(kCommand)};
+    std::vector<char*> argv{const_cast<char*>(program.c_str())};
     for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
     argv.push_back(nullptr);
 
@@ -63,7 +66,7 @@ inline Outcome run_command(const std::vector<std::string>& arguments, const std:
         ::dup2(err[1], STDERR_FILENO);
         for (const int descriptor : {out[0], out[1], err[0], err[1]}) ::close(descriptor);
         for (const std::string& setting : environment) ::putenv(const_cast<char*>(setting.c_str()));
-        ::execv(kCommand, argv.data());
+        ::execv(program.c_str(), argv.data());
         ::_exit(127);
     }
     ::close(out[1]);
@@ -98,6 +101,11 @@ inline Outcome run_command(const std::vector<std::string>& arguments, const std:
     return run;
 }
 
+inline Outcome run_command(const std::vector<std::string>& arguments, const std::string& input = {},
+                           const std::vector<std::string>& environment = {}, double limit_seconds = 60) {
+    return run_program(kCommand, arguments, input, environment, limit_seconds);
+}
+
 inline std::string read_file(const std::filesystem::path& path) {
     std::ifstream file(path, std::ios::binary);
     return {std::istreambuf_iterator<char>(file), {}};
@@ -123,6 +131,15 @@ class CliTest : public ::testing::Test {
             names.push_back(entry.path().filename().string());
         std::sort(names.begin(), names.end());
         return names;
+    }
+    // All files below a folder by their path in it, with their contents.
+    static std::map<std::string, std::string> tree(const std::filesystem::path& folder) {
+        std::map<std::string, std::string> files;
+        if (!std::filesystem::exists(folder)) return files;
+        for (const auto& entry : std::filesystem::recursive_directory_iterator(folder))
+            if (entry.is_regular_file())
+                files[entry.path().lexically_relative(folder).string()] = read_file(entry.path());
+        return files;
     }
     static std::string scene(const std::string& name) { return std::string(TESSERA_SOURCE_DIR "/scenes/") + name; }
 
