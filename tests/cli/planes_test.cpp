@@ -161,8 +161,12 @@ TEST_F(CliPlanes, OtherEndings) {
         if (module && !tessera::has_image_module()) continue;
         const Outcome run = render("spheres.gltf", {"-o", in_folder(name)});
         EXPECT_EQ(run.code, 0) << run.err;
-        const Image image = tessera::read_image(in_folder(name));
+        tessera::DecodeOptions options;
+        options.keep_float = true;
+        const Image image = tessera::read_image(in_folder(name), options);
         EXPECT_EQ(image.width(), 64) << name;
+        const bool linear = std::strcmp(name, "a.hdr") == 0 || std::strcmp(name, "a.exr") == 0;
+        EXPECT_EQ(image.format(), linear ? tessera::PixelFormat::kRgba32f : tessera::PixelFormat::kRgba8) << name;
     }
 }
 
