@@ -154,6 +154,7 @@ inline void setup(SetupJob& job) {
     alignas(64) std::int32_t tiles[kWidth];
     // Lanes whose front is clockwise as a viewer sees it, and those of which either side is drawn.
     const std::uint32_t turned = job.instance->handedness > 0 ? 0 : ~0u, either = job.double_sided ? ~0u : 0;
+    const bool of_lines = job.instance->mesh.ties != nullptr;
     for (std::uint32_t t = 0; t < job.count; t += kWidth) {
         const std::uint32_t left = job.count - t;
         // Which lanes are what: as bits, for it takes many operations on few of them.
@@ -236,7 +237,7 @@ inline void setup(SetupJob& job) {
             if (const std::uint32_t fits = kept & mask_bits(max(columns, lines) < Int(kBlockSide))) {
                 const bool wide = fits & mask_bits(columns > Int(3)), high = fits & mask_bits(lines > Int(3));
                 const Int first_x = (box.left << 8) + Int(job.sample.x), first_y = (box.top << 8) + Int(job.sample.y);
-                if (job.instance->mesh.ties)
+                if (of_lines)
                     cover_lines(job, t, x, y, first_x, first_y, wide, high, rows);
                 else
                     cover_small(x, y, first_x, first_y, wide, high, TopLeft{}, rows);

@@ -249,6 +249,8 @@ TEST_F(CliRender, UsageErrorsExitWith2AndNameTheOption) {
         {{"-o", out, "--size", "64"}, "--size"},
         {{"-o", out, "--samples", "0"}, "--samples"},
         {{"-o", out, "--samples", "4x"}, "--samples"},
+        {{"-o", out, "--point-size", "0"}, "--point-size"},
+        {{"-o", out, "--line-width", "257"}, "--line-width"},
         {{"-o", out, "--filter", "lanczos"}, "--filter"},
         {{"-o", out, "--show", "triangles"}, "--show"},
         {{"-o", out, "--show", "bins", "--engine", "reference-raster"}, "--show: needs --engine raster"},

@@ -288,6 +288,15 @@ TEST(Limits, TrianglesCountInstances) {
     EXPECT_EQ(load_error(text, {.max_triangles = 60}), "");
     EXPECT_EQ(load_error(text, {.max_triangles = 59}, ErrorCode::kLimit),
               "test.gltf: /scenes/0: 60 triangles, the limit is 59");
+    // As lines 45 and as a strip 89, twice each.
+    const auto with_mode = [&](const char* mode) {
+        std::string changed = text;
+        return changed.replace(changed.find(R"({"attributes")"), 1, mode);
+    };
+    EXPECT_EQ(load_error(with_mode(R"({"mode":1,)"), {.max_triangles = 90}), "");
+    EXPECT_NE(load_error(with_mode(R"({"mode":1,)"), {.max_triangles = 89}, ErrorCode::kLimit), "");
+    EXPECT_EQ(load_error(with_mode(R"({"mode":3,)"), {.max_triangles = 178}), "");
+    EXPECT_NE(load_error(with_mode(R"({"mode":3,)"), {.max_triangles = 177}, ErrorCode::kLimit), "");
     EXPECT_EQ(load_error(text, {.max_nodes = 2}), "");
     EXPECT_NE(load_error(text, {.max_nodes = 1}, ErrorCode::kLimit), "");
 }

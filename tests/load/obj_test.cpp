@@ -204,6 +204,7 @@ TEST(Obj, DamageIsNamed) {
     LoadOptions one;
     one.max_triangles = 1;
     EXPECT_NE(load_error(three + "f 1 2 3 1\n", "x.obj", one).find("line 4"), std::string::npos);
+    EXPECT_NE(load_error(three + "l 1 2 3\n", "x.obj", one).find("line 4"), std::string::npos);
     LoadOptions small;
     small.max_bytes = 5000;
     std::string many;
