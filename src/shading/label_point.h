@@ -58,7 +58,6 @@ TESSERA_INLINE Vec3T<F> albedo(const MaterialView& m, const SurfacePoint<F>& s) 
         case ShadingModel::kSpecularGlossiness:
             return evaluate_material(m, s).base;  // less what is mirrored
         case ShadingModel::kMetallicRoughness:
-        case ShadingModel::kSpecularGlossiness:
         case ShadingModel::kUnlit:
             break;
     }
