@@ -13,16 +13,32 @@
 namespace tessera::cli {
 namespace {
 
-std::uint64_t triangle_count(const Primitive& primitive) {
+struct Elements {
+    std::uint64_t triangles = 0, lines = 0, points = 0;
+};
+
+void count(const Primitive& primitive, Elements& sum) {
     const std::uint64_t n = primitive.indices.empty() ? primitive.positions.size() : primitive.indices.size();
     switch (primitive.mode) {
         case PrimitiveMode::kTriangles:
-            return n / 3;
+            sum.triangles += n / 3;
+            break;
         case PrimitiveMode::kTriangleStrip:
         case PrimitiveMode::kTriangleFan:
-            return n < 3 ? 0 : n - 2;
-        default:
-            return 0;
+            sum.triangles += n < 3 ? 0 : n - 2;
+            break;
+        case PrimitiveMode::kLines:
+            sum.lines += n / 2;
+            break;
+        case PrimitiveMode::kLineLoop:
+            sum.lines += n < 2 ? 0 : n;
+            break;
+        case PrimitiveMode::kLineStrip:
+            sum.lines += n < 2 ? 0 : n - 1;
+            break;
+        case PrimitiveMode::kPoints:
+            sum.points += n;
+            break;
     }
 }
 
@@ -102,16 +118,15 @@ void write(JsonWriter& json, std::string_view key, const std::vector<T>& items, 
 
 SceneSummary summarize(const Scene& scene) {
     SceneSummary summary;
-    std::vector<std::uint64_t> triangles_of_mesh;
+    std::vector<Elements> of_mesh;
     for (const Mesh& mesh : scene.meshes) {
-        std::uint64_t triangles = 0;
+        Elements& elements = of_mesh.emplace_back();
         for (const Primitive& primitive : mesh.primitives) {
             ++summary.primitives;
             summary.vertices += primitive.positions.size();
-            triangles += triangle_count(primitive);
+            count(primitive, elements);
         }
-        triangles_of_mesh.push_back(triangles);
-        summary.triangles += triangles;
+        summary.triangles += elements.triangles;
     }
     // The nodes are a forest, so an explicit stack sees each at most once.
     std::vector<int> pending;
@@ -124,7 +139,10 @@ SceneSummary summarize(const Scene& scene) {
         if (node.mesh == kNone) continue;
         const std::uint64_t copies = node.instances.empty() ? 1 : node.instances.size();
         summary.drawn_instances += copies;
-        summary.drawn_triangles += copies * triangles_of_mesh[static_cast<std::size_t>(node.mesh)];
+        const Elements& elements = of_mesh[static_cast<std::size_t>(node.mesh)];
+        summary.drawn_triangles += copies * elements.triangles;
+        summary.drawn_lines += copies * elements.lines;
+        summary.drawn_points += copies * elements.points;
     }
     summary.memory_bytes = memory_bytes(scene);
     summary.bounds = visible_bounds(scene);
@@ -137,6 +155,8 @@ std::string summary_text(const std::string& file, const Scene& scene, const Scen
     if (!scene.copyright.empty()) text += line("copyright", printable(scene.copyright));
     text += line("triangles", std::to_string(s.drawn_triangles) + " drawn by " + std::to_string(s.drawn_instances) +
                                   " mesh instances (" + std::to_string(s.triangles) + " stored)");
+    if (s.drawn_lines > 0) text += line("lines", std::to_string(s.drawn_lines) + " drawn");
+    if (s.drawn_points > 0) text += line("points", std::to_string(s.drawn_points) + " drawn");
     text += line("vertices", std::to_string(s.vertices));
     text += s.bounds.empty()
                 ? line("bounds", "nothing is drawn")
@@ -173,6 +193,7 @@ std::string summary_json(const std::string& file, const Scene& scene, const Scen
     json.member("meshes", scene.meshes.size()).member("primitives", s.primitives);
     json.member("vertices", s.vertices).member("triangles", s.triangles);
     json.member("drawn_instances", s.drawn_instances).member("drawn_triangles", s.drawn_triangles);
+    json.member("drawn_lines", s.drawn_lines).member("drawn_points", s.drawn_points);
     json.member("materials", scene.materials.size()).member("textures", scene.textures.size());
     json.member("pictures", scene.pictures.size()).member("samplers", scene.samplers.size());
     json.member("cameras", scene.cameras.size()).member("lights", scene.lights.size());

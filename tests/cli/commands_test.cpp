@@ -39,6 +39,19 @@ TEST_F(Cli, UnknownCommandsAreRefused) {
     }
 }
 
+TEST_F(Cli, InfoCountsPointsAndLines) {
+    std::ofstream(folder_ / "p.obj") << "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nl 1 2 3 4\np 1 2 3 4\nf 1 2 3\n";
+    const Outcome run = run_command({"info", in_folder("p.obj"), "--json"});
+    ASSERT_EQ(run.code, 0) << run.err;
+    simdjson::dom::parser parser;
+    const simdjson::dom::element counts = parser.parse(run.out)["counts"];
+    EXPECT_EQ(std::uint64_t(counts["drawn_triangles"]), 1u);
+    EXPECT_EQ(std::uint64_t(counts["drawn_lines"]), 3u);
+    EXPECT_EQ(std::uint64_t(counts["drawn_points"]), 4u);
+    EXPECT_NE(run_command({"info", in_folder("p.obj")}).out.find("lines         3 drawn\npoints        4 drawn\n"),
+              std::string::npos);
+}
+
 TEST_F(Cli, InfoCountsTheHierarchyScene) {
     const Outcome run = run_command({"info", scene("hierarchy.gltf"), "--json"});
     ASSERT_EQ(run.code, 0) << run.err;
