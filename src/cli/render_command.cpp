@@ -13,6 +13,7 @@
 #include "cli/shots.h"
 #include "cli/statistics.h"
 #include "cli/stopwatch.h"
+#include "cli/temporary_file.h"
 #include "cli/video.h"
 
 #include <tessera/tessera.h>
@@ -73,6 +74,8 @@ class Sequence {
         for (; drawn_ < shots_.count(); ++drawn_) {
             const PlannedShot shot = shots_.at(drawn_);
             const std::vector<std::string> files = video ? std::vector<std::string>{} : files_of(shot);
+            if (job_.skip_existing)
+                for (const std::string& file : files) stale_.remove(file);
             if (!files.empty() && job_.skip_existing && std::all_of(files.begin(), files.end(), exists)) continue;
             within(deadline, [&] { draw(shot, renderer, result); });
             const bool last = drawn_ + 1 == shots_.count();
@@ -150,6 +153,7 @@ class Sequence {
     const ShotList shots_;
     ProgressBar bar_;
     std::mutex bar_mutex_;
+    StaleFiles stale_;
     long drawn_ = 0;
     bool reported_ = false;
     std::vector<std::string> statistics_;
@@ -178,6 +182,7 @@ int run(const RenderArguments& arguments) {
         throw Error(ErrorCode::kLimit, "--size: more pixels than --max-pixels allows");
     check_outputs(job, arguments);
     if (job.codec == Codec::kVideo) {
+        if (job.skip_existing) StaleFiles().remove(arguments.output);
         if (job.skip_existing && ::access(arguments.output.c_str(), F_OK) == 0) return kFine;
         find_ffmpeg(arguments.output);
     }

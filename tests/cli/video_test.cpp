@@ -95,6 +95,16 @@ TEST_F(CliVideo, ANI11_AnEncoderThatHangsIsBoundByTheTimeout) {
     EXPECT_EQ(outputs(), Strings{});
 }
 
+TEST_F(CliVideo, ANI11_AKilledVideoIsMadeAgainAndItsRestGone) {
+    const Strings slow = with_ffmpeg("echo part >\"$file\"; exec sleep 100");
+    const Strings again = turn("clip.mp4") + Strings{"--skip-existing"};
+    EXPECT_EQ(run_command(again, {}, slow, 2).signal, SIGKILL);
+    ASSERT_EQ(outputs().size(), 1u) << "what was being written";
+    EXPECT_EQ(outputs()[0].rfind("clip.mp4.tessera-", 0), 0u);
+    ASSERT_EQ(run_command(again, {}, with_ffmpeg("cat >\"$file\"")).code, 0);
+    EXPECT_EQ(outputs(), Strings{"clip.mp4"});
+}
+
 TEST_F(CliVideo, ANI11_WithoutFfmpegTheMessageSaysSo) {
     fs::create_directories(folder_ / "bin");
     const Outcome run = run_command(turn("clip.mp4"), {}, {"PATH=" + in_folder("bin")});
