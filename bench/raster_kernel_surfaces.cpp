@@ -10,7 +10,7 @@ struct SurfaceTile : MiddleTile {
     std::vector<float> records;
     SurfaceLayout layout;
 
-    explicit SurfaceTile(const std::string& workload) : MiddleTile(workload), layout(task.layouts[0]) {
+    explicit SurfaceTile(const std::string& workload) : MiddleTile(workload), layout(task.shading_batches.layouts[0]) {
         see();
         const auto floats = static_cast<std::uint32_t>(surface_floats(layout));
         record_of.resize(triangle_count + 1);
@@ -180,6 +180,48 @@ KernelWork shade_points_work(const std::string& workload) {
     return work;
 }
 
+// Normals and positions of a tile, by its picture of one tile.
+KernelWork label_surfaces_work(const std::string& workload) {
+    struct State {
+        SurfaceTile tile;
+        std::vector<float> normal, position;
+        RasterTargets space;
+        explicit State(const std::string& name)
+            : tile(name), normal(3 * tile.ordinal.size()), position(3 * tile.ordinal.size()) {}
+    };
+    const auto state = std::make_shared<State>(workload);
+    KernelWork work{};
+    work.items = state->tile.covered();
+    work.clear = [=] {
+        std::fill(state->normal.begin(), state->normal.end(), -2.0f);
+        std::fill(state->position.begin(), state->position.end(), -2.0f);
+    };
+    work.run = [=](const RasterKernels& kernels) {
+        const SurfaceTile& t = state->tile;
+        LabelSurfaceJob job{};
+        job.source = &t.task.source;
+        job.material = &t.frame.shading->context().materials[t.frame.frame.instances[0].material];
+        job.labels = {.normal = true, .position = true};
+        job.layout = t.layout;
+        job.records = t.records.data();
+        job.record_of = t.record_of.data();
+        job.x0 = t.x0, job.y0 = t.y0, job.side = t.side;
+        job.ordinal = t.ordinal.data();
+        job.label_from_camera = state->space.label_from_camera;
+        job.picture_width = static_cast<std::size_t>(t.side);
+        job.planes.normal = state->normal.data();
+        job.planes.position = state->position.data();
+        return seconds_of([&] { kernels.label_surfaces(job); });
+    };
+    work.output = [=] {
+        Bytes bytes;
+        append(bytes, state->normal.data(), state->normal.size());
+        append(bytes, state->position.data(), state->position.size());
+        return bytes;
+    };
+    return work;
+}
+
 // Develops the sums of the workload's tile; `background` without any.
 KernelWork develop_work(ToneMap tone_map, Encoding encoding, bool background) {
     struct State {
@@ -241,6 +283,8 @@ std::vector<KernelCase> surface_cases() {
     add_shade("studio", "studio_sphere100k", false);
     for (const char* workload : {"sphere10k", "sphere1m", "soup20k", "studio_sphere100k"})
         cases.push_back({std::string("shade_points/") + workload, [=] { return shade_points_work(workload); }});
+    for (const char* workload : {"sphere10k", "sphere1m"})
+        cases.push_back({std::string("label_surfaces/") + workload, [=] { return label_surfaces_work(workload); }});
     const auto add_film = [&](const char* name, ToneMap tone_map, Encoding encoding, bool background) {
         cases.push_back({std::string("develop/") + name, [=] { return develop_work(tone_map, encoding, background); }});
     };
