@@ -148,7 +148,7 @@ PlaneOptions parse_planes(const PlaneTexts& texts, const std::string& output) {
     for (const Aov aov : aovs) {
         if (options.colormap == Colormap::kIds && (aov == Aov::kDepth || aov == Aov::kAlpha))
             refuse("--colormap", std::string("ids is for whole numbers, not for ") + name(aov));
-        check_format(aov, options);
+        if (!output.empty()) check_format(aov, options);
     }
     return options;
 }
