@@ -207,6 +207,7 @@ KernelWork label_surfaces_work(const std::string& workload) {
         job.record_of = t.record_of.data();
         job.x0 = t.x0, job.y0 = t.y0, job.side = t.side;
         job.ordinal = t.ordinal.data();
+        job.depth = t.depth.data();
         job.label_from_camera = state->space.label_from_camera;
         job.picture_width = static_cast<std::size_t>(t.side);
         job.planes.normal = state->normal.data();

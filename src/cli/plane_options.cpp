@@ -56,11 +56,6 @@ std::vector<Aov> parse_aovs(const std::string& text) {
     return aovs;
 }
 
-bool is_number_plane(Aov aov) {
-    return aov == Aov::kDepth || aov == Aov::kAlpha || aov == Aov::kNode || aov == Aov::kMaterial ||
-           aov == Aov::kPrimitive || aov == Aov::kMotionSeen;
-}
-
 // Whether a file of that kind holds the plane as it is, or in the way that the help says.
 void check_format(Aov aov, const PlaneOptions& options) {
     const std::string& extension = options.extension;
@@ -108,6 +103,11 @@ const char* name(Aov aov) {
     return "unknown";
 }
 
+bool is_number_plane(Aov aov) {
+    return aov == Aov::kDepth || aov == Aov::kAlpha || aov == Aov::kNode || aov == Aov::kMaterial ||
+           aov == Aov::kPrimitive || aov == Aov::kMotionSeen;
+}
+
 std::string extension_of(const std::string& output) {
     if (output.empty() || output == "-" || output.compare(0, 5, "/dev/") == 0) return "png";
     const std::string file = output.substr(output.find_last_of('/') + 1);
@@ -135,14 +135,23 @@ PlaneOptions parse_planes(const PlaneTexts& texts, const std::string& output) {
         options.range = parse_range(texts.range);
     }
     if (!texts.depth_scale.empty()) options.depth_scale = parse_number("--depth-scale", texts.depth_scale, 1e-6, 1e9);
-    if (!texts.color_bits.empty()) options.color_bits = parse_color_bits("--color-bits", texts.color_bits);
+    const auto has = [&](Aov aov) { return std::find(aovs.begin(), aovs.end(), aov) != aovs.end(); };
+    const bool arrays = options.extension == "npy" || options.extension == "exr";
+    if (!texts.depth_scale.empty() && (!has(Aov::kDepth) || arrays || options.colormap))
+        refuse("--depth-scale", "is for --aov depth as .png, without a colormap");
+    if (!texts.color_bits.empty()) {
+        options.color_bits = parse_color_bits("--color-bits", texts.color_bits);
+        if (file_content(options.extension) == FileContent::kLinear)
+            refuse("--color-bits", "is for pictures of 8 bits");
+        if (!has(Aov::kColor)) refuse("--color-bits", "needs --aov color");
+    }
     if (texts.dither && texts.palette.empty()) refuse("--dither", "needs --palette");
     if (!texts.palette.empty()) {
         options.palette.emplace();
         options.palette->colors = static_cast<int>(parse_integer("--palette", texts.palette, 2, 256));
         options.palette->dither = texts.dither;
         if (options.extension != "png") refuse("--palette", "is for .png");
-        if (std::find(aovs.begin(), aovs.end(), Aov::kColor) == aovs.end()) refuse("--palette", "needs --aov color");
+        if (!has(Aov::kColor)) refuse("--palette", "needs --aov color");
     }
     options.files = files_for(aovs, output, options.extension);
     for (const Aov aov : aovs) {

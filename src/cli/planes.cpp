@@ -189,7 +189,7 @@ std::vector<std::byte> encode_planes(const PlaneOptions& options, const PlaneFil
     const Aov aov = file.planes.front();
     const Image& plane = plane_of(aov, result);
     if (options.extension == "npy") return encode_npy(plane);
-    if (options.colormap && aov != Aov::kColor) {
+    if (options.colormap && is_number_plane(aov)) {
         if (options.extension == "png" && *options.colormap != Colormap::kIds)
             return encode_png(index_plane(plane, *options.colormap, 8, options.range), options.encode.png);
         return encode_image(options.extension, apply_colormap(plane, *options.colormap, options.range), options.encode);

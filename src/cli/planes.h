@@ -31,6 +31,9 @@ enum class Aov {
 };
 const char* name(Aov aov);
 
+// Whether the plane has one number a pixel, so that colormaps can show it.
+bool is_number_plane(Aov aov);
+
 // One file of every picture.
 struct PlaneFile {
     std::string aov;  // what stands for {aov}

@@ -100,11 +100,16 @@ void parse_cameras(const RenderArguments& a, RenderJob& job) {
     }
     if (a.poses.empty()) return;
     if (!a.camera.empty() || !a.eye.empty()) refuse("--poses", "excludes --camera and --eye");
+    if (a.up != "y" && a.up != "z") refuse("--poses", "excludes --up X,Y,Z");
     if (!a.fov.empty()) refuse("--poses", "excludes --fov; give --intrinsics for poses without their own");
     if (job.frames && job.frames->turning) refuse("--poses", "excludes --turntable");
     job.poses = read_poses(a.poses, job.render.width, job.render.height);
-    for (Pose& pose : job.poses)
+    bool used = a.intrinsics.empty();
+    for (Pose& pose : job.poses) {
+        used = used || !pose.view.intrinsics;
         if (!pose.view.intrinsics) pose.view.intrinsics = view.intrinsics;
+    }
+    if (!used) refuse("--intrinsics", "all cameras of " + a.poses + " have their own");
     if (job.codec == Codec::kVideo) {
         if (job.frames && job.poses.size() > 1) refuse("--poses", "one picture of a video has one camera");
     } else if (job.poses.size() > 1 && !has_place(a.output, "camera")) {
@@ -249,6 +254,9 @@ RenderJob parse_render_arguments(const RenderArguments& a) {
     render.label_space = choose<LabelSpace>(
         "--space", a.space,
         {{"world", LabelSpace::kWorld}, {"camera", LabelSpace::kCamera}, {"opencv", LabelSpace::kOpenCvCamera}});
+    if (a.depth != "planar" && !render.want_depth) refuse("--depth", "needs --aov depth");
+    if (a.space != "world" && !(render.want_normal || render.want_shading_normal || render.want_position))
+        refuse("--space", "needs --aov normal, shading-normal or position");
 
     const Size size = parse_size("--size", a.size);
     render.width = size.width, render.height = size.height;

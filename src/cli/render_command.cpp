@@ -52,6 +52,14 @@ std::string output_of(const std::string& pattern, const std::string& camera, std
     return fill_pattern("--output", pattern, values);
 }
 
+std::string camera_name(const RenderJob& job) { return job.camera.empty() ? "default" : job.camera; }
+
+std::string video_file(const RenderJob& job, const RenderArguments& arguments) {
+    if (job.poses.size() > 1 && has_place(arguments.output, "camera"))
+        refuse("--output", "a video is one file of all cameras: it has no {camera}");
+    return output_of(arguments.output, job.poses.empty() ? camera_name(job) : job.poses[0].name, std::nullopt, "color");
+}
+
 // Draws and writes one picture after the other, and remembers what happened for the statistics.
 class Sequence {
   public:
@@ -70,7 +78,8 @@ class Sequence {
         RenderResult result;
         std::optional<Video> video;
         if (job_.codec == Codec::kVideo)
-            video.emplace(arguments_.output, VideoOptions{job_.fps, !job_.render.background}, job_.render.cancel);
+            video.emplace(video_file(job_, arguments_), VideoOptions{job_.fps, !job_.render.background},
+                          job_.render.cancel);
         for (; drawn_ < shots_.count(); ++drawn_) {
             const PlannedShot shot = shots_.at(drawn_);
             const std::vector<std::string> files = video ? std::vector<std::string>{} : files_of(shot);
@@ -159,20 +168,35 @@ class Sequence {
     std::vector<std::string> statistics_;
 };
 
-// Refuses now what could not be written later, and cameras that would have one file.
+// Refuses now what could not be written later, and pictures that would have one file.
 void check_outputs(const RenderJob& job, const RenderArguments& arguments) {
     if (!arguments.stats.empty()) check_writable(arguments.stats);
     if (arguments.output.empty()) return;
-    if (job.codec == Codec::kVideo) return check_writable(arguments.output);
-    const std::optional<long> frame = job.frames ? std::optional(job.frames->first) : std::nullopt;
+    if (job.codec == Codec::kVideo) return check_writable(video_file(job, arguments));
     std::set<std::string> files;
-    const std::size_t cameras = std::max<std::size_t>(job.poses.size(), 1);
-    for (std::size_t i = 0; i < cameras; ++i) {
-        const std::string camera = job.poses.empty() ? job.camera : job.poses[i].name;
-        const std::string file = output_of(arguments.output, camera, frame, job.planes.files.front().aov);
-        if (!files.insert(file).second) refuse("--output", "'" + file + "' would be written twice");
-    }
-    for (const std::string& file : files) check_writable(file);
+    std::vector<std::string> cameras;
+    for (const Pose& pose : job.poses) cameras.push_back(pose.name);
+    if (cameras.empty()) cameras.push_back(camera_name(job));
+    const long frames = job.frames ? job.frames->count() : 1;
+    // Of very many pictures the first ones tell.
+    constexpr std::size_t kMany = std::size_t{1} << 18;
+    for (const std::string& camera : cameras)
+        for (long f = 0; f < frames && files.size() < kMany; ++f)
+            for (const PlaneFile& plane : job.planes.files) {
+                const std::optional<long> frame = job.frames ? std::optional(job.frames->first + f) : std::nullopt;
+                const std::string file = output_of(arguments.output, camera, frame, plane.aov);
+                if (!files.insert(file).second) refuse("--output", "'" + file + "' would be written twice");
+                if (f == 0) check_writable(file);
+            }
+}
+
+// A picture whose motion is measured to itself.
+void warn_of_rest(const RenderJob& job, const RenderArguments& arguments) {
+    const PlannedShot shot = ShotList(job).at(0);
+    if (!job.render.want_motion || arguments.quiet || shot.before != shot.now || shot.after != shot.now) return;
+    if (ShotList(job).count() == 1)
+        report_warnings(input_name(arguments.scene),
+                        {"nothing moves: give --time, --frames, --turntable or --poses for motion"});
 }
 
 int run(const RenderArguments& arguments) {
@@ -194,6 +218,7 @@ int run(const RenderArguments& arguments) {
     times.load_ms = loading.milliseconds();
     set_up(job, scene);
 
+    warn_of_rest(job, arguments);
     Sequence sequence(job, scene, arguments);
     sequence.run(deadline, times, total);
     if (!arguments.stats.empty()) write_output(arguments.stats, sequence.statistics());

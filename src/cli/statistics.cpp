@@ -48,7 +48,7 @@ std::string statistics_json(const std::string& scene, const RenderOptions& optio
     json.member("engine", name(stats.engine)).member("isa", name(stats.isa)).member("threads", stats.threads);
     json.member("width", options.width).member("height", options.height);
     json.member("samples", options.samples).member("exposure", stats.exposure);
-    json.member("color_hash", std::string_view(hash_text(stats.color_hash)));
+    if (!result.color.empty()) json.member("color_hash", std::string_view(hash_text(stats.color_hash)));
     add_plane_hashes(json, result);
     json.member("triangles", stats.triangles);
     json.key("culls").begin_object();

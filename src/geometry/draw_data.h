@@ -61,6 +61,7 @@ struct InstanceView {
     float skin_side = 1;         // -1 where the skin mirrors: its vertices go the other way round
     std::uint32_t first_triangle;
     std::uint32_t material;         // index into the shading materials
+    std::uint32_t scene_material;   // index into Scene::materials; their number for the default one
     std::uint32_t node;             // index into Scene::nodes
     std::uint32_t first_primitive;  // as first_triangle, of what labels count: points, lines and triangles, seen or not
 };

@@ -19,9 +19,11 @@ void store_rows(const glm::dmat4& m, int rows, float* out) {
 // Sets the vertical angle of the largest picture around the axis that these intrinsics hold, for views that frame what
 // is visible; returns its aspect.
 double framing_lens(const Intrinsics& k, int width, int height, View& view) {
-    const bool finite = k.fx - k.fx == 0 && k.fy - k.fy == 0 && k.cx - k.cx == 0 && k.cy - k.cy == 0;
-    if (!finite || !(k.fx > 0 && k.fy > 0))
-        throw Error(ErrorCode::kUsage, "intrinsics must be finite, and their focal lengths positive");
+    constexpr double kLeast = 1e-3, kMost = 1e7;  // pixels
+    if (!(k.fx >= kLeast && k.fx <= kMost && k.fy >= kLeast && k.fy <= kMost))
+        throw Error(ErrorCode::kUsage, "focal lengths of intrinsics must be 0.001 to 10000000 pixels");
+    if (!(k.cx >= -kMost && k.cx <= kMost && k.cy >= -kMost && k.cy <= kMost))
+        throw Error(ErrorCode::kUsage, "the centre of intrinsics must be finite, and within 10000000 pixels");
     double tx = std::min(k.cx + 0.5, width - k.cx - 0.5) / k.fx, ty = std::min(k.cy + 0.5, height - k.cy - 0.5) / k.fy;
     // An axis that leaves the picture frames nothing well; any angle will do.
     if (!(tx > 0)) tx = width / k.fx;
@@ -138,7 +140,7 @@ void make_frame(PreparedScene& scene, const View& view, int width, int height, c
     frame.node_to_clip.clear();
     frame.world_to_camera = camera.world_to_camera;
     frame.points = frame.lines = 0;
-    std::uint64_t primitives = 0;
+    const std::size_t lit = lit_materials(scene.scene());
     std::vector<StrokeTask> tasks;
     for (std::size_t n = 0; n < scene.nodes().size(); ++n) {
         const PreparedNode& node = scene.nodes()[n];
@@ -159,12 +161,12 @@ void make_frame(PreparedScene& scene, const View& view, int width, int height, c
         for (std::uint32_t i = node.first; i < node.placement_end; ++i) {
             const Placement& placement = scene.placements()[i];
             instance.mesh = placement.mesh->view;
-            instance.first_primitive = static_cast<std::uint32_t>(primitives);
+            instance.first_primitive = placement.first_primitive;
             instance.material = placement.material;
+            instance.scene_material = static_cast<std::uint32_t>(
+                placement.material == ink_material(scene.scene()) ? lit - 1 : placement.material % lit);
             const Primitive& primitive = placement.mesh->primitive();
             const std::uint64_t elements = element_count(primitive);
-            primitives += elements;
-            if (primitives > kMostTriangles) refuse_triangles();
             std::size_t copies = 1;  // of strokes one for each task, which are filled below
             if (!has_triangles(primitive.mode)) {
                 (primitive.mode == PrimitiveMode::kPoints ? frame.points : frame.lines) += elements;

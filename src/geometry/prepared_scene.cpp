@@ -1,5 +1,7 @@
 #include "geometry/prepared_scene.h"
 
+#include <tessera/error.h>
+
 #include "geometry/animation.h"
 #include "geometry/bounds.h"
 #include "geometry/matrix.h"
@@ -15,6 +17,12 @@ namespace {
 // Whether a second copy at the same place would be hidden by the first one, sample by sample.
 bool is_solid(const Scene& scene, const Primitive& p) {
     return p.material == kNone || scene.materials[static_cast<std::size_t>(p.material)].alpha_mode != AlphaMode::kBlend;
+}
+
+constexpr std::uint64_t kMostPrimitives = 0xfffffffeu;
+
+[[noreturn]] void refuse_primitives() {
+    throw Error(ErrorCode::kLimit, "the scene has more than 4294967294 triangles, lines and points");
 }
 
 // Where primitives have been placed. An exact duplicate of a solid one loses every depth test against
@@ -60,7 +68,8 @@ void PreparedScene::place_nodes() {
     nodes_.clear();
     placements_.clear();
     PlacesTaken taken;
-    std::vector<const Primitive*> skinned;
+    std::vector<std::pair<const Primitive*, std::uint64_t>> skinned;
+    std::uint64_t primitives = 0;
     for (const int index : transforms_.order) {
         const Node& node = scene_.nodes[static_cast<std::size_t>(index)];
         const glm::dmat4& world = transforms_.world[static_cast<std::size_t>(index)];
@@ -78,14 +87,17 @@ void PreparedScene::place_nodes() {
             if (instanced) prepared.world = world * instance_matrix(node.instances[copy]);
             if (prepared.has_mesh)
                 for (const Primitive& p : scene_.meshes[static_cast<std::size_t>(node.mesh)].primitives) {
-                    if (element_count(p) == 0) {
-                        continue;
-                    } else if (is_skinned(scene_, node, p)) {
-                        if (copy == 0) skinned.push_back(&p);
+                    const std::uint64_t number = primitives, elements = element_count(p);
+                    if (elements == 0) continue;
+                    const bool follows_skin = is_skinned(scene_, node, p);
+                    if (!follows_skin || copy == 0) primitives += elements;
+                    if (primitives > kMostPrimitives) refuse_primitives();
+                    if (follows_skin) {
+                        if (copy == 0) skinned.emplace_back(&p, number);
                     } else if (is_morphed(p)) {
-                        place(p, deform(index, p, nullptr));
+                        place(p, deform(index, p, nullptr), number);
                     } else if (!is_solid(scene_, p) || taken.insert(&p, prepared.world)) {
-                        place(p, prepare(p));
+                        place(p, prepare(p), number);
                     }
                 }
             prepared.placement_end = static_cast<std::uint32_t>(placements_.size());
@@ -95,17 +107,17 @@ void PreparedScene::place_nodes() {
         const JointMatrices joints =
             joint_matrices(scene_.skins[static_cast<std::size_t>(node.skin)], transforms_.world);
         const auto begin = static_cast<std::uint32_t>(placements_.size());
-        for (const Primitive* p : skinned) place(*p, deform(index, *p, &joints));
+        for (const auto& [p, number] : skinned) place(*p, deform(index, *p, &joints), number);
         nodes_.push_back({index, kNone, true, begin, static_cast<std::uint32_t>(placements_.size()),
                           joints.object_to_world, joints.mirrored});
     }
 }
 
-void PreparedScene::place(const Primitive& p, const PreparedMesh& mesh) {
+void PreparedScene::place(const Primitive& p, const PreparedMesh& mesh, std::uint64_t first_primitive) {
     std::size_t material = p.material == kNone ? scene_.materials.size() : static_cast<std::size_t>(p.material);
     if (!has_triangles(p.mode) && p.normals.empty())
         material = p.material == kNone && p.colors.empty() ? ink_material(scene_) : material + lit_materials(scene_);
-    placements_.push_back({&mesh, static_cast<std::uint32_t>(material)});
+    placements_.push_back({&mesh, static_cast<std::uint32_t>(material), static_cast<std::uint32_t>(first_primitive)});
 }
 
 const PreparedMesh& PreparedScene::prepare(const Primitive& p) {

@@ -26,6 +26,9 @@ inline std::size_t ink_material(const Scene& scene) { return 2 * lit_materials(s
 struct Placement {
     const PreparedMesh* mesh;
     std::uint32_t material;  // as lit_materials() says
+    // The number of its first point, line or triangle, of all of the scene in the order of submission: duplicates that
+    // are not placed count, so that numbers are the same at every moment.
+    std::uint32_t first_primitive;
 };
 
 // What a node of the active scene carries. A node whose mesh is skinned in part comes twice.
@@ -65,7 +68,7 @@ class PreparedScene {
     const PreparedMesh& prepare(const Primitive& primitive);
     const PreparedMesh& deform(int node, const Primitive& primitive, const JointMatrices* joints);
     void place_nodes();
-    void place(const Primitive& primitive, const PreparedMesh& mesh);
+    void place(const Primitive& primitive, const PreparedMesh& mesh, std::uint64_t first_primitive);
     void visit_animation(const PointVisitor& visit);
     const PlacedCamera& standing_camera(const View& view, double aspect);
 

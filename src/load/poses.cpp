@@ -4,7 +4,9 @@
 #include "load/json.h"
 #include "simd/math.h"
 
+#include <algorithm>
 #include <cmath>
+#include <initializer_list>
 #include <new>
 #include <set>
 
@@ -12,6 +14,7 @@ namespace tessera {
 namespace {
 
 constexpr std::uint64_t kMostBytes = std::uint64_t{1} << 28;
+constexpr float kFarthest = 1e15f;
 
 // Three or four rows of four numbers, of a rotation and a translation.
 Mat4 read_rigid(const Json& json) {
@@ -56,8 +59,23 @@ Mat4 flipped(Mat4 camera_to_world) {
     return camera_to_world;
 }
 
+constexpr double kLeastFocal = 1e-3, kMostPixels = 1e7;
+
 void check_lens(const Json& place, const Intrinsics& k) {
-    if (!(k.fx > 0 && k.fy > 0)) place.fail("focal lengths must be positive");
+    if (!(k.fx >= kLeastFocal && k.fy >= kLeastFocal && k.fx <= kMostPixels && k.fy <= kMostPixels))
+        place.fail("focal lengths must be positive, 0.001 to 10000000 pixels");
+    if (!(std::fabs(k.cx) <= kMostPixels && std::fabs(k.cy) <= kMostPixels))
+        place.fail("the centre must be within 10000000 pixels");
+}
+
+// A misspelt name would otherwise look as if the member were absent.
+void check_names(const Json& json, std::initializer_list<std::string_view> known) {
+    json.each_member([&](std::string_view key, const Json& value) {
+        if (std::find(known.begin(), known.end(), key) != known.end()) return;
+        std::string names;
+        for (const std::string_view name : known) names.append(names.empty() ? "" : ", ").append(name);
+        value.fail("there is no such member; there are " + names);
+    });
 }
 
 std::optional<Intrinsics> read_intrinsics(const Json& json) {
@@ -79,23 +97,24 @@ std::optional<Intrinsics> read_intrinsics(const Json& json) {
 void check_size(const Json& json, const char* width_name, const char* height_name, int width, int height) {
     const std::optional<Json> w = json.find(width_name), h = json.find(height_name);
     if (!w && !h) return;
-    const double is_w = w ? w->real() : width, is_h = h ? h->real() : height;
-    if (is_w == width && is_h == height) return;
-    const auto text = [](double side) {
-        return side >= 0 && side < 1e9 ? std::to_string(static_cast<long>(side)) : std::string("?");
+    const auto side = [](const std::optional<Json>& given, int own) {
+        return given ? given->integer(1u << 30) : static_cast<std::uint64_t>(own);
     };
-    json.fail("the cameras are made for pictures of " + text(is_w) + "x" + text(is_h) + " pixels, not " +
-              std::to_string(width) + "x" + std::to_string(height));
+    const std::uint64_t is_w = side(w, width), is_h = side(h, height);
+    if (is_w == static_cast<std::uint64_t>(width) && is_h == static_cast<std::uint64_t>(height)) return;
+    json.fail("the cameras are made for pictures of " + std::to_string(is_w) + "x" + std::to_string(is_h) +
+              " pixels, not " + std::to_string(width) + "x" + std::to_string(height));
 }
 
 std::vector<Pose> read_cameras(const Json& root, int width, int height) {
     const std::string convention = root.string_or("convention", "opencv");
     if (convention != "opencv" && convention != "opengl")
         root.at("convention").fail("'" + convention.substr(0, 80) + "' is none of opencv, opengl");
-    check_size(root, "width", "height", width, height);
+    check_names(root, {"convention", "width", "height", "intrinsics", "cameras"});
     const std::optional<Intrinsics> common = read_intrinsics(root);
     std::vector<Pose> poses;
     root.at("cameras").each([&](const Json& camera, std::size_t i) {
+        check_names(camera, {"name", "camera_to_world", "world_to_camera", "intrinsics"});
         Pose pose;
         pose.name = camera.string_or("name", std::to_string(i));
         const std::optional<Json> to_world = camera.find("camera_to_world"),
@@ -103,9 +122,12 @@ std::vector<Pose> read_cameras(const Json& root, int width, int height) {
         if (to_world.has_value() == from_world.has_value())
             camera.fail("needs one of camera_to_world and world_to_camera");
         const Mat4 placement = to_world ? read_rigid(*to_world) : inverse(read_rigid(*from_world));
+        for (int r = 0; r < 3; ++r)
+            if (!(std::fabs(placement(r, 3)) <= kFarthest)) camera.fail("the camera stands too far away");
         pose.view.camera_to_world = convention == "opencv" ? flipped(placement) : placement;
         pose.view.intrinsics = read_intrinsics(camera);
         if (!pose.view.intrinsics) pose.view.intrinsics = common;
+        if (pose.view.intrinsics) check_size(root, "width", "height", width, height);
         poses.push_back(std::move(pose));
     });
     return poses;
@@ -118,35 +140,50 @@ std::string stem(std::string_view path) {
     return std::string(path);
 }
 
-// The lens of a frame, or of all; nothing where neither says one.
-std::optional<Intrinsics> read_nerf_lens(const Json& json, int width, int height) {
-    const auto number = [&](const char* key, double otherwise) {
-        const std::optional<Json> value = json.find(key);
-        return value ? value->real() : otherwise;
+// What a frame says of its lens, or else the root; nothing where neither does. Only pinholes are drawn.
+std::optional<Intrinsics> read_nerf_lens(const Json& frame, const Json& root, int width, int height) {
+    const auto find = [&](std::string_view key) {
+        const std::optional<Json> own = frame.find(key);
+        return own ? own : root.find(key);
     };
-    double fx = number("fl_x", 0);
-    if (!json.find("fl_x")) {
-        const std::optional<Json> angle = json.find("camera_angle_x");
-        if (!angle) return std::nullopt;
-        const double radians = angle->real();
-        if (!(radians > 0 && radians < 3.14)) angle->fail("the angle must be above 0 and below pi");
-        fx = 0.5 * width / math::tan(0.5 * radians);
+    const auto focal = [&](std::string_view pixels, std::string_view angle, int side) -> std::optional<double> {
+        if (const std::optional<Json> f = find(pixels)) return f->real();
+        const std::optional<Json> a = find(angle);
+        if (!a) return std::nullopt;
+        const double radians = a->real();
+        if (!(radians > 0 && radians < 3.14)) a->fail("the angle must be above 0 and below pi");
+        return 0.5 * side / math::tan(0.5 * radians);
+    };
+    for (const char* distortion : {"k1", "k2", "k3", "k4", "k5", "k6", "p1", "p2"})
+        if (const std::optional<Json> d = find(distortion); d && d->real() != 0)
+            d->fail("lenses that distort are not drawn; undistort the photographs and leave it out");
+    if (const std::optional<Json> model = find("camera_model"))
+        if (const std::string_view name = model->string();
+            name != "OPENCV" && name != "PINHOLE" && name != "SIMPLE_PINHOLE" && name != "perspective")
+            model->fail("only pinhole cameras are drawn");
+    const std::optional<double> fx = focal("fl_x", "camera_angle_x", width),
+                                fy = focal("fl_y", "camera_angle_y", height);
+    if (!fx && !fy) return std::nullopt;
+    const auto middle = [&](std::string_view key, int side) {
+        const std::optional<Json> c = find(key);
+        return (c ? c->real() : 0.5 * side) - 0.5;
+    };
+    if (find("fl_x") || find("fl_y") || find("cx") || find("cy")) {
+        check_size(root, "w", "h", width, height);
+        check_size(frame, "w", "h", width, height);
     }
-    const Intrinsics lens{fx, number("fl_y", fx), number("cx", 0.5 * width) - 0.5, number("cy", 0.5 * height) - 0.5};
-    check_lens(json, lens);
+    const Intrinsics lens{fx ? *fx : *fy, fy ? *fy : *fx, middle("cx", width), middle("cy", height)};
+    check_lens(frame, lens);
     return lens;
 }
 
 std::vector<Pose> read_transforms(const Json& root, int width, int height) {
-    check_size(root, "w", "h", width, height);
-    const std::optional<Intrinsics> common = read_nerf_lens(root, width, height);
     std::vector<Pose> poses;
     root.at("frames").each([&](const Json& frame, std::size_t i) {
         Pose pose;
         pose.name = stem(frame.string_or("file_path", std::to_string(i)));
         pose.view.camera_to_world = read_rigid(frame.at("transform_matrix"));
-        pose.view.intrinsics = read_nerf_lens(frame, width, height);
-        if (!pose.view.intrinsics) pose.view.intrinsics = common;
+        pose.view.intrinsics = read_nerf_lens(frame, root, width, height);
         poses.push_back(std::move(pose));
     });
     return poses;
@@ -156,6 +193,7 @@ std::vector<Pose> read_transforms(const Json& root, int width, int height) {
 
 std::vector<Pose> parse_poses(std::string_view json, int width, int height, const std::string& name) {
     try {
+        if (json.starts_with("\xef\xbb\xbf")) json.remove_prefix(3);
         simdjson::dom::parser parser;
         const simdjson::padded_string padded(json);
         simdjson::dom::element element;

@@ -47,8 +47,12 @@ inline void label_tile(const LabelJob& job) {
     }
     label_numbers(job, job.planes.triangle,
                   [&](const TileTriangle& t) { return job.instances[t.instance].first_triangle + t.triangle; });
+    label_numbers(job, job.planes.primitive, [&](const TileTriangle& t) {
+        return job.instances[t.instance].first_primitive + job.instances[t.instance].mesh.element_of(t.triangle);
+    });
     label_numbers(job, job.planes.node, [&](const TileTriangle& t) { return job.instances[t.instance].node; });
-    label_numbers(job, job.planes.material, [&](const TileTriangle& t) { return job.instances[t.instance].material; });
+    label_numbers(job, job.planes.material,
+                  [&](const TileTriangle& t) { return job.instances[t.instance].scene_material; });
 }
 
 // Writes kNumbers numbers for each of the lanes, which are pixels from (column, row) of the tile on.
@@ -84,7 +88,8 @@ inline void label_surfaces_of(const LabelSurfaceJob& job) {
                     y = to_float((lane_row() + Int(job.y0 + row)) << 8) + Float(128.0f);
         SurfaceSample<Float> sample;
         sample_lanes(job, layout, ordinals, job.ordinal + at, used, x, y, sample);
-        const SurfacePoint<Float> s = surface_point(layout, rays, sample, x, y, 1.0f);
+        SurfacePoint<Float> s = surface_point(layout, rays, sample, x, y, 1.0f);
+        s.position = position_of_depth(job.source->projection, rays, load<Float>(job.depth + at), x, y);
         const LabelPoint<Float> p = label_point(labels, layout, material, job.label_from_camera, s);
         const auto write = [&](float* plane, const Vec3T<Float>& v) {
             const Float values[3] = {v.x, v.y, v.z};

@@ -236,12 +236,14 @@ struct DevelopJob {
 struct LabelPlanes {
     float* distance;                                     // metres along the view axis, or to the eye
     std::uint32_t* triangle;                             // 1 + number in the frame
+    std::uint32_t* primitive;                            // 1 + number of the point, line or triangle in the scene
     std::uint32_t *node, *material;                      // 1 + index
     float *normal, *shading_normal, *position, *albedo;  // three numbers a pixel
     float* uv;                                           // two
 
     TESSERA_INLINE bool any() const {
-        return distance || triangle || node || material || normal || shading_normal || position || albedo || uv;
+        return distance || triangle || primitive || node || material || normal || shading_normal || position ||
+               albedo || uv;
     }
 };
 
@@ -270,6 +272,7 @@ struct LabelSurfaceJob {
     const std::uint32_t* record_of;  // by ordinal: where in `records`
     int x0, y0, side;
     const std::uint32_t* ordinal;
+    const float* depth;              // by pixel
     const float* label_from_camera;  // 3x4 rows
     std::size_t picture_width;
     LabelPlanes planes;  // from the tile's first pixel on

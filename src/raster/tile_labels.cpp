@@ -45,7 +45,7 @@ void Tile::choose_label_fragments() {
 LabelPlanes Tile::label_planes() const {
     const std::size_t first = picture_place(0);
     LabelPlanes p = task_->targets.labels;
-    for (std::uint32_t** plane : {&p.triangle, &p.node, &p.material})
+    for (std::uint32_t** plane : {&p.triangle, &p.primitive, &p.node, &p.material})
         if (*plane) *plane += first;
     if (p.distance) p.distance += first;
     for (float** plane : {&p.normal, &p.shading_normal, &p.position, &p.albedo})
@@ -65,7 +65,8 @@ void Tile::write_labels(bool something) const {
     job.triangles = triangles_.data();
     job.instances = task_->frame.instances.data();
     job.planes = label_planes();
-    job.window = window({job.planes.distance, job.planes.triangle, job.planes.node, job.planes.material});
+    const LabelPlanes& p = job.planes;
+    job.window = window({p.distance, p.triangle, p.primitive, p.node, p.material});
     task_->kernels.label(job);
 }
 
@@ -106,6 +107,7 @@ void Tile::label_surfaces() {
         job.label_from_camera = task_->targets.label_from_camera;
         job.picture_width = static_cast<std::size_t>(task_->frame.projection.width);
         job.planes = label_planes();
+        job.depth = depth_.data();
         job.ordinal = ordinal_.data();
         if (shown.size() > 1) {
             std::uint32_t* const own = batch_ordinals_.reserve(ordinal_.size());

@@ -51,7 +51,9 @@ SurfacePoint<float> SurfaceSampler::sample(std::uint32_t triangle, SamplePositio
 }
 
 LabelPoint<float> SurfaceSampler::label(std::uint32_t triangle, SamplePosition at, const float* label_from_camera) {
-    const SurfacePoint<float> s = sample(triangle, at, 1.0f);
+    SurfacePoint<float> s = sample(triangle, at, 1.0f);
+    s.position = position_of_depth(frame_.projection, rays_, depth(triangle, at), static_cast<float>(at.x),
+                                   static_cast<float>(at.y));
     return label_point(*labels_, layout_, material(triangle), label_from_camera, s);
 }
 

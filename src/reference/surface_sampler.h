@@ -40,6 +40,11 @@ class SurfaceSampler {
     const PictureRays& rays() const { return rays_; }
     const TriangleSetup& setup(std::uint32_t triangle);
     const InstanceView& instance(std::uint32_t triangle);
+    // What labels call the point, line or triangle that it belongs to, 0-based.
+    std::uint32_t primitive(std::uint32_t triangle) {
+        const InstanceView& i = instance(triangle);
+        return i.first_primitive + i.mesh.element_of(triangle - i.first_triangle);
+    }
     const MaterialView& material(std::uint32_t triangle) { return context_.materials[instance(triangle).material]; }
     const ShadingContext& context() const { return context_; }
 

@@ -115,8 +115,7 @@ RasterTargets make_planes(const RenderOptions& o, RenderResult& result) {
     make_plane<float>(o.want_alpha, o, PixelFormat::kF32, result.alpha);
     LabelPlanes& labels = targets.labels;
     labels.distance = make_plane<float>(o.want_depth, o, PixelFormat::kF32, result.depth);
-    labels.triangle =
-        make_plane<std::uint32_t>(o.want_primitive || o.want_motion, o, PixelFormat::kU32, result.primitive);
+    labels.primitive = make_plane<std::uint32_t>(o.want_primitive, o, PixelFormat::kU32, result.primitive);
     labels.node = make_plane<std::uint32_t>(o.want_node, o, PixelFormat::kU32, result.node);
     labels.material = make_plane<std::uint32_t>(o.want_material, o, PixelFormat::kU32, result.material);
     labels.normal = make_plane<float>(o.want_normal, o, PixelFormat::kRgb32f, result.normal);
@@ -138,7 +137,6 @@ void finish_planes(const RenderOptions& options, RenderResult& result) {
         for (std::size_t i = 0; i < pixels; ++i) alpha[i] = linear[4 * i + 3];
     }
     if (!options.want_linear) result.linear = {};
-    if (!options.want_primitive) result.primitive = {};
 }
 
 }  // namespace tessera

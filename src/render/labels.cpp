@@ -72,8 +72,9 @@ LabelCounts take_labels(ReferenceEngine& engine, const Frame& frame, const RunCo
         const std::uint32_t triangle = nearest[i] - 1;
         counts.pixels += hit;
         if (planes.triangle) planes.triangle[i] = nearest[i];
+        if (planes.primitive) planes.primitive[i] = hit ? surfaces.primitive(triangle) + 1 : 0;
         if (planes.node) planes.node[i] = hit ? surfaces.instance(triangle).node + 1 : 0;
-        if (planes.material) planes.material[i] = hit ? surfaces.instance(triangle).material + 1 : 0;
+        if (planes.material) planes.material[i] = hit ? surfaces.instance(triangle).scene_material + 1 : 0;
         if (planes.distance)
             planes.distance[i] =
                 hit ? distance_at(surfaces, triangle, at, targets.euclidean) : std::numeric_limits<float>::infinity();
@@ -86,26 +87,6 @@ LabelCounts take_labels(ReferenceEngine& engine, const Frame& frame, const RunCo
         if (planes.uv) planes.uv[2 * i] = p.uv.x, planes.uv[2 * i + 1] = p.uv.y;
     }
     return counts;
-}
-
-void label_strokes(const Scene& scene, const Frame& frame, Arena& arena, RenderResult& result) {
-    std::uint32_t* const primitive = result.primitive.empty() ? nullptr : result.primitive.data<std::uint32_t>();
-    std::uint32_t* const material = result.material.empty() ? nullptr : result.material.data<std::uint32_t>();
-    if (!primitive && !material) return;
-    const auto lit = static_cast<std::uint32_t>(lit_materials(scene));
-    const auto width = static_cast<std::size_t>(frame.projection.width);
-    arena.for_each(static_cast<std::size_t>(frame.projection.height), [&](std::size_t y) {
-        const InstanceView* instance = nullptr;  // the latest
-        for (std::size_t i = y * width; i < (y + 1) * width; ++i) {
-            if (material && material[i] > lit) material[i] = material[i] > 2 * lit ? lit : material[i] - lit;
-            if (!primitive || primitive[i] == 0) continue;
-            const std::uint32_t triangle = primitive[i] - 1;
-            if (!instance || triangle - instance->first_triangle >= instance->mesh.triangle_count)
-                instance = &frame.instance_of(triangle);
-            primitive[i] =
-                1 + instance->first_primitive + instance->mesh.element_of(triangle - instance->first_triangle);
-        }
-    });
 }
 
 }  // namespace tessera

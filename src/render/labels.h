@@ -22,8 +22,4 @@ struct LabelCounts {
 LabelCounts take_labels(ReferenceEngine& engine, const Frame& frame, const RunControl& control,
                         const RasterTargets& targets);
 
-// Where points and lines are in the scene: from numbers of triangles to those of points, lines and triangles, as
-// `primitive` has them; from materials of shading to those of the scene.
-void label_strokes(const Scene& scene, const Frame& frame, Arena& arena, RenderResult& result);
-
 }  // namespace tessera

@@ -75,12 +75,16 @@ class OtherTriangles {
         return t.depth.at(q.x, q.y) <= depth + slack(own, 256) + slack(t, 256);
     }
 
-    // The same for a point at `q` that has no surface around it: whether the pixel shows nothing that is nearer.
-    bool sees_point(float depth, SamplePosition q) {
+    // The same for a point at `q` that has no surface around it, of a point or line of that number in the scene:
+    // whether the pixel shows itself, or nothing that is nearer.
+    bool sees_point(std::uint32_t primitive, float depth, SamplePosition q) {
         const auto width = static_cast<std::size_t>(other_.frame.projection.width);
         const std::uint32_t number =
             other_.seen[static_cast<std::size_t>(q.y >> 8) * width + static_cast<std::size_t>(q.x >> 8)];
         if (number == 0) return true;
+        const InstanceView& instance = other_.frame.instance_of(number - 1);
+        if (instance.first_primitive + instance.mesh.element_of(number - 1 - instance.first_triangle) == primitive)
+            return true;
         const TriangleSetup& t = setup(number - 1);
         return t.depth.at(q.x, q.y) <= depth + slack(t, 256) + 1e-6f * depth;
     }
@@ -124,8 +128,9 @@ class OtherTriangles {
 };
 
 // Barycentric coordinates of the point of a triangle that is seen at (x, y) of normalised device coordinates. A sample
-// that only snapping put inside gets the nearest point, nearly. False for a triangle that is seen edge on.
-bool barycentrics(const glm::dvec4 (&v)[3], double x, double y, double (&b)[3]) {
+// that only snapping put inside gets a point nearby, which `moved` then says. False for a triangle that is seen edge
+// on.
+bool barycentrics(const glm::dvec4 (&v)[3], double x, double y, double (&b)[3], bool& moved) {
     double sum = 0;
     for (int i = 0; i < 3; ++i) {
         const glm::dvec4 &j = v[(i + 1) % 3], &k = v[(i + 2) % 3];
@@ -134,9 +139,13 @@ bool barycentrics(const glm::dvec4 (&v)[3], double x, double y, double (&b)[3]) 
     }
     if (!(std::fabs(sum) > 0)) return false;
     double inside = 0;
+    moved = false;
     for (double& part : b) {
         part /= sum;
-        if (!(part > 0)) part = 0;
+        if (!(part > 0)) {
+            moved = moved || part != 0;
+            part = 0;
+        }
         inside += part;
     }
     if (!(inside > 0) || !(inside - inside == 0)) return false;
@@ -158,12 +167,19 @@ class RowMotion {
         const double px = x + 0.5, py = y + 0.5;
         const double w = static_cast<double>(now_.projection.width), h = static_cast<double>(now_.projection.height);
         double b[3];
-        if (!barycentrics(here_, 2 * px / w - 1, 1 - 2 * py / h, b)) return false;
+        bool moved = false;
+        if (!barycentrics(here_, 2 * px / w - 1, 1 - 2 * py / h, b, moved)) return false;
         const glm::dvec4 p = there_[0] * b[0] + there_[1] * b[1] + there_[2] * b[2];
         const double qx = (p.x / p.w + 1) * 0.5 * w, qy = (1 - p.y / p.w) * 0.5 * h;
         if (!(p.w > 0) || !(std::fabs(qx) < 1e7 && std::fabs(qy) < 1e7)) return false;
-        vector[0] = static_cast<float>(qx - px);
-        vector[1] = static_cast<float>(qy - py);
+        double from_x = px, from_y = py;
+        if (moved) {
+            const glm::dvec4 from = here_[0] * b[0] + here_[1] * b[1] + here_[2] * b[2];
+            if (!(from.w > 0)) return false;
+            from_x = (from.x / from.w + 1) * 0.5 * w, from_y = (1 - from.y / from.w) * 0.5 * h;
+        }
+        vector[0] = static_cast<float>(qx - from_x);
+        vector[1] = static_cast<float>(qy - from_y);
         const bool inside = qx >= 0 && qx < w && qy >= 0 && qy < h && p.z <= p.w && p.z >= 0;
         return inside && sees({static_cast<std::int32_t>(qx * 256), static_cast<std::int32_t>(qy * 256)});
     }
@@ -183,12 +199,13 @@ class RowMotion {
         if (!(from.w > 0 && to.w > 0)) return false;
         const double dx = stands_ ? 0 : (to.x / to.w - from.x / from.w) * 0.5 * w,
                      dy = stands_ ? 0 : (from.y / from.w - to.y / to.w) * 0.5 * h;
-        const double qx = px + dx, qy = py + dy;
+        const double qx = (to.x / to.w + 1) * 0.5 * w, qy = (1 - to.y / to.w) * 0.5 * h;
         if (!(std::fabs(qx) < 1e7 && std::fabs(qy) < 1e7)) return false;
         vector[0] = static_cast<float>(dx), vector[1] = static_cast<float>(dy);
         const bool inside = qx >= 0 && qx < w && qy >= 0 && qy < h && to.z <= to.w && to.z >= 0;
-        return inside && triangles_.sees_point(static_cast<float>(to.z / to.w), {static_cast<std::int32_t>(qx * 256),
-                                                                                 static_cast<std::int32_t>(qy * 256)});
+        return inside &&
+               triangles_.sees_point(primitive_, static_cast<float>(to.z / to.w),
+                                     {static_cast<std::int32_t>(qx * 256), static_cast<std::int32_t>(qy * 256)});
     }
 
     // One that is not drawn there is a duplicate: the one that is stands at the same place.
@@ -206,6 +223,7 @@ class RowMotion {
         there_instance_ = moved_.instance[i];
         stands_ = moved_.stands[i] != 0;
         stroke_ = instance.mesh.is_stroke();
+        primitive_ = instance.first_primitive + instance.mesh.element_of(local_);
         if (stands_ && !stroke_) return;
         const std::uint32_t node = now_.node_of_instance[i];
         const PreparedMesh& mesh = prepared_mesh(*now_.prepared[i]);
@@ -223,7 +241,7 @@ class RowMotion {
     const OtherShot& other_;
     const Moved& moved_;
     OtherTriangles triangles_;
-    std::uint32_t triangle_ = 0xffffffffu, local_ = 0, there_instance_ = kNoInstance;
+    std::uint32_t triangle_ = 0xffffffffu, local_ = 0, there_instance_ = kNoInstance, primitive_ = 0;
     bool stands_ = false, stroke_ = false;
     glm::dvec4 here_[3], there_[3];
 };
@@ -247,7 +265,7 @@ const float* OtherShot::positions_of(const PreparedMesh& mesh) const {
     return found == positions_.end() ? mesh.view.positions : found->second.data();
 }
 
-void measure_motion(const Frame& now, const std::uint32_t* primitive, const MaterialView* materials,
+void measure_motion(const Frame& now, const std::uint32_t* triangles, const MaterialView* materials,
                     const OtherShot* after, const OtherShot* before, Arena& arena, const MotionPlanes& planes) {
     const auto width = static_cast<std::size_t>(now.projection.width),
                height = static_cast<std::size_t>(now.projection.height);
@@ -265,8 +283,8 @@ void measure_motion(const Frame& now, const std::uint32_t* primitive, const Mate
             for (std::size_t y = part * kRows; y < end; ++y)
                 for (std::size_t x = 0; x < width; ++x) {
                     const std::size_t i = y * width + x;
-                    if (primitive[i] == 0) continue;
-                    const bool seen = !motion || motion->measure(primitive[i] - 1, static_cast<int>(x),
+                    if (triangles[i] == 0) continue;
+                    const bool seen = !motion || motion->measure(triangles[i] - 1, static_cast<int>(x),
                                                                  static_cast<int>(y), planes.vectors + 4 * i + 2 * s);
                     planes.seen[i] |= seen ? 1u << s : 0u;
                 }

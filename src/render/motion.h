@@ -1,5 +1,5 @@
 // Motion vectors: where the surface that a pixel shows is at another shot, and whether it is to be seen there. From
-// the plane of primitives alone, whichever engine made it: barycentric coordinates of the pixel's centre in double
+// the plane of triangles alone, whichever engine made it: barycentric coordinates of the pixel's centre in double
 // from the triangle's homogeneous edges (Olano and Greer 1997), the same point of the moved triangle, projected.
 #pragma once
 
@@ -33,8 +33,8 @@ struct MotionPlanes {
     std::uint32_t* seen;  // a bit each
 };
 
-// `primitive` has 1 + number of the triangle in `now`, whose nodes are kept. Null: the same shot as `now`.
-void measure_motion(const Frame& now, const std::uint32_t* primitive, const MaterialView* materials,
+// `triangles` has 1 + number of the triangle in `now`, whose nodes are kept. Null: the same shot as `now`.
+void measure_motion(const Frame& now, const std::uint32_t* triangles, const MaterialView* materials,
                     const OtherShot* after, const OtherShot* before, Arena& arena, const MotionPlanes& planes);
 
 }  // namespace tessera

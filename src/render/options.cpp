@@ -28,7 +28,7 @@ std::uint64_t picture_bytes(const RenderOptions& o) {
     const std::uint64_t labels =
         4 * count({o.want_alpha, o.want_depth, o.want_primitive, o.want_node, o.want_material}) +
         12 * count({o.want_normal, o.want_shading_normal, o.want_position, o.want_albedo}) + 8 * count({o.want_uv}) +
-        32 * count({o.want_motion}) + 16 * count({o.want_linear || o.want_alpha});
+        36 * count({o.want_motion}) + 16 * count({o.want_linear || o.want_alpha});
     return pixels * (4 + 4 + 16 + 4 + (o.filter == PixelFilter::kBox ? 0 : 16 + 1) +
                      (o.show == Stage::kPicture ? 0 : 4) + labels);
 }
@@ -105,7 +105,9 @@ FilmView film_view(const RenderOptions& options, double exposure) {
 }
 
 StrokeStyle stroke_style(const RenderOptions& options) {
-    return {options.point_size, options.line_width, options.max_bytes - picture_bytes(options)};
+    // For motion there are three frames at a time.
+    const std::uint64_t bytes = options.max_bytes - picture_bytes(options);
+    return {options.point_size, options.line_width, options.want_motion ? bytes / 3 : bytes};
 }
 
 std::vector<SamplePosition> sample_positions(const RenderOptions& options) {

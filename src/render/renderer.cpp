@@ -24,13 +24,14 @@ struct Renderer::Impl {
           arena(o.threads),
           prepared(s, &arena, o.engine == Engine::kRaster ? resolve_isa(o.isa) : Isa::kScalar),
           shading(s, prepared.used_materials(), arena, warnings) {
-        const bool wide = o.filter != PixelFilter::kBox && (o.want_color || o.want_linear);
+        const bool wide = o.filter != PixelFilter::kBox && (o.want_color || o.want_linear || o.want_alpha);
         if (o.engine != Engine::kRaster || !wide) return;
         filter.emplace(o, &arena);
         sample_plane.resize(filter->plane_floats());
     }
 
     void draw(const Shot& now, const Shot& before, const Shot& after, RenderResult& result);
+    RasterTargets make_targets(RenderResult& result);
     void see_other(const Shot& shot, const Watchdog& watchdog, OtherShot& other);
     void draw_tiles(const Watchdog& watchdog, Stopwatch& watch, RenderResult& result);
     void draw_reference(const Watchdog& watchdog, Stopwatch& watch, RenderResult& result);
@@ -41,8 +42,9 @@ struct Renderer::Impl {
     Arena arena;
     PreparedScene prepared;
     ShadingScene shading;
-    Frame frame;              // the latest
-    OtherShot before, after;  // that motion is measured to
+    Frame frame;                           // the latest
+    OtherShot before, after;               // that motion is measured to
+    std::vector<std::uint32_t> triangles;  // for motion: 1 + number of the one that each pixel shows
     RasterEngine raster;
     // Of filters wider than the pixel: the sums, and the picture of one sample, linear RGBA.
     std::optional<FilterPass> filter;
@@ -77,12 +79,11 @@ void Renderer::Impl::draw(const Shot& now, const Shot& earlier, const Shot& late
     else
         draw_reference(watchdog, watch, result);
     if (options.want_motion) {
-        measure_motion(frame, result.primitive.data<std::uint32_t>(), shading.context().materials,
-                       to ? &after : nullptr, from ? &before : nullptr, arena,
+        measure_motion(frame, triangles.data(), shading.context().materials, to ? &after : nullptr,
+                       from ? &before : nullptr, arena,
                        {result.motion.data<float>(), result.motion_seen.data<std::uint32_t>()});
         watch.phase("motion");
     }
-    if (frame.points + frame.lines > 0) label_strokes(scene, frame, arena, result);
     finish_planes(options, result);
 
     result.warnings = frame.warnings;
@@ -92,6 +93,16 @@ void Renderer::Impl::draw(const Shot& now, const Shot& earlier, const Shot& late
     result.stats.points = frame.points;
     result.stats.lines = frame.lines;
     watch.finish();
+}
+
+RasterTargets Renderer::Impl::make_targets(RenderResult& result) {
+    RasterTargets targets = make_planes(options, result);
+    set_label_space(options, frame, targets);
+    if (options.want_motion) {
+        triangles.resize(static_cast<std::size_t>(options.width) * static_cast<std::size_t>(options.height));
+        targets.labels.triangle = triangles.data();
+    }
+    return targets;
 }
 
 // What is to be seen at another shot.
@@ -116,8 +127,7 @@ void Renderer::Impl::see_other(const Shot& shot, const Watchdog& watchdog, Other
 // The tile rasterizer: visibility, shading and film inside each tile. With a filter that is wider than
 // the pixel, linear pictures of one sample each, and the film after the last of them.
 void Renderer::Impl::draw_tiles(const Watchdog& watchdog, Stopwatch& watch, RenderResult& result) {
-    RasterTargets targets = make_planes(options, result);
-    set_label_space(options, frame, targets);
+    const RasterTargets targets = make_targets(result);
     RasterSettings settings = raster_settings(options, shading.film(options), watchdog.control(0, 1));
     result.stats.isa = settings.isa;
     result.stats.threads = arena.threads();
@@ -156,8 +166,7 @@ void Renderer::Impl::draw_reference(const Watchdog& watchdog, Stopwatch& watch, 
     if (tracing && !is_square(frame.projection))
         throw Error(ErrorCode::kUsage, "reference-trace needs a picture that is square to the camera's axes");
     ReferenceEngine engine(frame, shading.context(), tracing, options.shadows);
-    RasterTargets targets = make_planes(options, result);
-    set_label_space(options, frame, targets);
+    const RasterTargets targets = make_targets(result);
     watch.phase("build");
 
     if (targets.colors()) {

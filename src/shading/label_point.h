@@ -93,6 +93,12 @@ TESSERA_INLINE LabelPoint<F> label_point(const SurfaceLabels& labels, const Surf
     return out;
 }
 
+// Where in camera space the surface of a reversed depth is: the position that agrees with the label of depth.
+template <class F>
+TESSERA_INLINE Vec3T<F> position_of_depth(const ProjectionView& p, const PictureRays& rays, F depth, F x, F y) {
+    return EyeDirection<F>(rays, x, y).position(rays.orthographic, -distance_of_depth(p, depth));
+}
+
 // The distance to the eye of what is `distance` away along the view axis, at a picture position.
 template <class F>
 TESSERA_INLINE F euclidean_distance(const PictureRays& rays, F distance, F x, F y) {

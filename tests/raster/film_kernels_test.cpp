@@ -98,7 +98,8 @@ TEST_P(FilmKernels, Labels) {
     for (std::uint32_t i = 0; i < 3; ++i) {
         instances[i].first_triangle = 1000 * i;
         instances[i].node = 70 + i;
-        instances[i].material = 5 - i;
+        instances[i].scene_material = 5 - i;
+        instances[i].first_primitive = 2000 * i;
     }
     for (int round = 0; round < 120; ++round) {
         const int side = 32 << round % 3;
@@ -130,15 +131,16 @@ TEST_P(FilmKernels, Labels) {
         };
         struct Planes {
             Window<float> distance;
-            Window<std::uint32_t> triangle, node, material;
+            Window<std::uint32_t> triangle, primitive, node, material;
         };
-        const auto planes = [&] { return Planes{window(0.0f), window(0u), window(0u), window(0u)}; };
+        const auto planes = [&] { return Planes{window(0.0f), window(0u), window(0u), window(0u), window(0u)}; };
         Planes got = planes(), want = planes();
         job.window.stride = 4 * got.node.stride;
         const bool with_distance = round % 3 != 1, with_numbers = round % 3 != 2;
         const auto run = [&](const RasterKernels& k, Planes& p) {
             job.planes.distance = with_distance ? p.distance.pixels.data() : nullptr;
             job.planes.triangle = with_numbers ? p.triangle.pixels.data() : nullptr;
+            job.planes.primitive = with_numbers ? p.primitive.pixels.data() : nullptr;
             job.planes.node = with_numbers ? p.node.pixels.data() : nullptr;
             job.planes.material = with_numbers ? p.material.pixels.data() : nullptr;
             k.label(job);
@@ -147,7 +149,7 @@ TEST_P(FilmKernels, Labels) {
         run(scalar(), want);
         ASSERT_TRUE(same_bytes(got.distance.pixels, want.distance.pixels)) << round;
         ASSERT_FALSE(got.distance.gaps_changed()) << round;
-        for (auto plane : {&Planes::triangle, &Planes::node, &Planes::material}) {
+        for (auto plane : {&Planes::triangle, &Planes::primitive, &Planes::node, &Planes::material}) {
             ASSERT_TRUE(same_bytes((got.*plane).pixels, (want.*plane).pixels)) << round;
             ASSERT_FALSE((got.*plane).gaps_changed()) << round;
         }
@@ -160,6 +162,7 @@ TEST_P(FilmKernels, Labels) {
                 const TileTriangle t = o == 0 ? TileTriangle{0, 0} : triangles[o - 1];
                 if (with_numbers) {
                     ASSERT_EQ(got.triangle.pixels[at], o == 0 ? 0 : 1000 * t.instance + t.triangle + 1);
+                    ASSERT_EQ(got.primitive.pixels[at], o == 0 ? 0 : 2000 * t.instance + t.triangle + 1);
                     ASSERT_EQ(got.node.pixels[at], o == 0 ? 0 : 71 + t.instance);
                     ASSERT_EQ(got.material.pixels[at], o == 0 ? 0 : 6 - t.instance);
                 }

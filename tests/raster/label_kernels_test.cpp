@@ -50,7 +50,9 @@ void expect_by_definition(const LabelSurfaceJob& job, const Planes& planes, int 
     SurfaceSample<float> sample;
     sample_planes(
         job.layout, px, py, [record](int i) { return record[i]; }, sample);
-    const SurfacePoint<float> s = surface_point(job.layout, PictureRays(job.source->projection), sample, px, py, 1.0f);
+    SurfacePoint<float> s = surface_point(job.layout, PictureRays(job.source->projection), sample, px, py, 1.0f);
+    s.position = position_of_depth(job.source->projection, PictureRays(job.source->projection),
+                                   job.depth[place_of(x, y, job.side)], px, py);
     const LabelPoint<float> p = label_point(job.labels, job.layout, *job.material, kTurned, s);
     const auto same = [&](const GuardedArray<float>& plane, const Vec3T<float>& v) {
         const float numbers[3] = {v.x, v.y, v.z};
@@ -108,6 +110,9 @@ TEST_P(LabelKernels, BEY2_SameLabelsOfASurface) {
                 ordinal[i] = run;
             }
             job.ordinal = ordinal.data();
+            GuardedArray<float> depth(ordinal.size());
+            for (std::size_t i = 0; i < depth.size(); ++i) depth[i] = 0.01f + 0.001f * static_cast<float>(i % 97);
+            job.depth = depth.data();
             const std::size_t pixels =
                 job.picture_width * static_cast<std::size_t>(job.side - 1) + static_cast<std::size_t>(job.side);
             Planes got(pixels), want(pixels);
