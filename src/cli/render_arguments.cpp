@@ -247,6 +247,12 @@ RenderJob parse_render_arguments(const RenderArguments& a) {
     job.codec = parse_codec(a.output, a.planes);
     job.planes = parse_planes(a.planes, job.codec == Codec::kVideo ? std::string() : a.output);
     want_planes(job.planes, render);
+    if (file_content(job.planes.extension) == FileContent::kLinear) {
+        const std::string why = "is for pictures of 8 bits; ." + job.planes.extension + " holds linear radiance";
+        if (a.background != "white" && a.background != "none") refuse("--background", why);
+        if (a.tone_map != "neutral") refuse("--tone-map", why);
+        if (a.encoding != "srgb") refuse("--encoding", why);
+    }
     EncodeOptions& encode = job.planes.encode;
     encode.jpeg_quality = encode.webp.quality = static_cast<int>(parse_integer("--quality", a.quality, 1, 100));
     encode.png.level = static_cast<int>(parse_integer("--png-level", a.png_level, 0, 12));

@@ -155,6 +155,43 @@ TEST_F(CliPlanes, FB2_ColormapsAndPalettesArePalettePictures) {
     EXPECT_EQ(different, 0u);
 }
 
+// A colormap is for the planes of one number; the others are written as ever. Alpha is filtered as the picture is.
+TEST_F(CliPlanes, FB2_ColormapsLeaveOtherPlanesAlone) {
+    const Outcome run =
+        render("spheres.gltf", {"-o", in_folder("{aov}.png"), "--aov", "depth,normal", "--colormap", "magma"});
+    ASSERT_EQ(run.code, 0) << run.err;
+    ASSERT_EQ(render("spheres.gltf", {"-o", in_folder("n.png"), "--aov", "normal"}).code, 0);
+    EXPECT_EQ(read_file(in_folder("normal.png")), read_file(in_folder("n.png")));
+    ASSERT_EQ(render("spheres.gltf", {"-o", in_folder("alone.npy"), "--aov", "alpha", "--filter", "gaussian"}).code, 0);
+    ASSERT_EQ(
+        render("spheres.gltf", {"-o", in_folder("both_{aov}.npy"), "--aov", "alpha,color", "--filter", "gaussian"})
+            .code,
+        0);
+    EXPECT_EQ(read_file(in_folder("alone.npy")), read_file(in_folder("both_alpha.npy")));
+}
+
+// What would be two files of one name, and what has no place in a video.
+TEST_F(CliPlanes, NamesAreCheckedBeforeAnythingIsDrawn) {
+    std::string cameras = R"({"cameras": [)";
+    for (int i = 0; i < 12; ++i)
+        cameras.append(i == 0 ? "" : ",").append(R"({"camera_to_world": [[1,0,0,0],[0,-1,0,1],[0,0,-1,6]]})");
+    std::ofstream(in_folder("c.json")) << cameras << "]}";
+    const Outcome run =
+        run_command({"render", scene("motion.gltf"), "-s", "8x8", "-o", in_folder("{camera}{frame}.png"), "--poses",
+                     in_folder("c.json"), "--frames", "0-11"});
+    EXPECT_EQ(run.code, 2);
+    EXPECT_NE(run.err.find("would be written twice"), std::string::npos) << run.err;
+    const Outcome video = render("spheres.gltf", {"-o", in_folder("{camera}.mp4"), "--poses", in_folder("c.json")});
+    EXPECT_EQ(video.code, 2) << video.err;
+    EXPECT_EQ(folder_contents(), Strings{"c.json"});
+}
+
+TEST_F(CliPlanes, BEY2_MotionOfWhatStandsIsSaidSo) {
+    const Outcome run = render("spheres.gltf", {"-o", in_folder("m.npy"), "--aov", "motion"});
+    EXPECT_EQ(run.code, 0);
+    EXPECT_NE(run.err.find("nothing moves"), std::string::npos) << run.err;
+}
+
 TEST_F(CliPlanes, OtherEndings) {
     for (const char* name : {"a.webp", "a.hdr", "a.tif", "a.exr"}) {
         const bool module = std::strcmp(name, "a.tif") == 0 || std::strcmp(name, "a.exr") == 0;
@@ -195,6 +232,13 @@ TEST_F(CliPlanes, WhatCannotBeWrittenIsRefusedByName) {
     refused({"-o", in_folder("a.png"), "--depth", "long"}, "--depth: 'long' is none of");
     refused({"-o", in_folder("a_{b}.png")}, "{b} is no place to fill in");
     refused({"-o", in_folder("a.mp4"), "--turntable", "3", "--aov", "depth"}, "--aov: a video shows color");
+    refused({"-o", in_folder("a.exr"), "--color-bits", "3-3-2"}, "--color-bits: is for pictures of 8 bits");
+    refused({"-o", in_folder("a.exr"), "--background", "red"}, "--background: is for pictures of 8 bits");
+    refused({"-o", in_folder("a.hdr"), "--tone-map", "aces"}, "--tone-map: is for pictures of 8 bits");
+    refused({"-o", in_folder("a.png"), "--depth", "euclidean"}, "--depth: needs --aov depth");
+    refused({"-o", in_folder("a.png"), "--space", "camera"}, "--space: needs --aov normal");
+    refused({"-o", in_folder("a.npy"), "--aov", "depth", "--depth-scale", "10"}, "--depth-scale: is for");
+    refused({"-o", in_folder("a.png"), "--intrinsics", "1e9,9,3,4"}, "intrinsics must be");
 }
 
 // Cameras of a file: one picture each, and each that of its matrix.

@@ -94,8 +94,26 @@ TEST(Poses, FaultsAreNamedByTheirPlace) {
             "/intrinsics: focal lengths");
     refused(std::string(R"({"intrinsics": [1, 1, 1], "cameras": [{"camera_to_world": )") + kOpenCv + "}]}",
             "found 3 numbers");
-    refused(std::string(R"({"width": 640, "height": 480, "cameras": [{"camera_to_world": )") + kOpenCv + "}]}",
-            "640x480 pixels, not 64x48");
+    refused(
+        std::string(R"({"width": 640, "height": 480, "intrinsics": [1, 1, 1, 1], "cameras": [{"camera_to_world": )") +
+            kOpenCv + "}]}",
+        "640x480 pixels, not 64x48");
+    refused(std::string(R"({"intrinsic": [1, 1, 1, 1], "cameras": [{"camera_to_world": )") + kOpenCv + "}]}",
+            "/intrinsic: there is no such member");
+    refused(std::string(R"({"cameras": [{"camera_matrix": 1, "camera_to_world": )") + kOpenCv + "}]}",
+            "/cameras/0/camera_matrix: there is no such member");
+    refused(std::string(R"({"intrinsics": [1e20, 1, 1, 1], "cameras": [{"camera_to_world": )") + kOpenCv + "}]}",
+            "/intrinsics: focal lengths");
+    refused(std::string(R"({"intrinsics": [1, 1, 1e20, 1], "cameras": [{"camera_to_world": )") + kOpenCv + "}]}",
+            "/intrinsics: the centre");
+    refused(cameras("opencv", "world_to_camera", "[[1,0,0,3e38],[0,1,0,0],[0,0,1,0]]"), "too far away");
+    refused(R"({"fl_x": 9, "k1": 0.5, "frames": [{"transform_matrix": [[1,0,0,0],[0,1,0,0],[0,0,1,0]]}]})",
+            "/k1: lenses");
+    refused(
+        R"({"fl_x": 9, "camera_model": "FISHEYE", "frames": [{"transform_matrix": [[1,0,0,0],[0,1,0,0],[0,0,1,0]]}]})",
+        "/camera_model: only pinhole");
+    refused(R"({"fl_x": 9, "frames": [{"w": 10, "transform_matrix": [[1,0,0,0],[0,1,0,0],[0,0,1,0]]}]})",
+            "10x48 pixels");
     refused(std::string(R"({"cameras": [{"name": "a", "camera_to_world": )") + kOpenCv +
                 R"(}, {"name": "a", "camera_to_world": )" + kOpenCv + "}]}",
             "two cameras have one name");
