@@ -270,6 +270,43 @@ TEST(MotionVectors, BEY2_WhatLeavesThePictureOrTurnsAwayIsNotSeen) {
     EXPECT_EQ(behind.second, 0.0f);
 }
 
+// Points that do not hide each other are seen, all of each.
+TEST(MotionVectors, BEY2_PointsSeeThemselves) {
+    Scene scene;
+    Primitive grid;
+    grid.mode = PrimitiveMode::kPoints;
+    for (int y = 0; y < 20; ++y)
+        for (int x = 0; x < 20; ++x)
+            grid.positions.push_back({0.1f * static_cast<float>(x) - 1, 0.1f * static_cast<float>(y) - 1, 0});
+    add_mesh(scene, grid);
+    for (const Engine engine : {Engine::kRaster, Engine::kReferenceRaster}) {
+        RenderOptions o;
+        o.width = o.height = 200;
+        o.engine = engine;
+        o.want_color = false;
+        o.want_motion = true;
+        o.point_size = 3;
+        o.view.eye = {0, 0, 4};
+        o.view.target = {0, 0, 0};
+        o.view.yfov = 0.9f;
+        View other = o.view;
+        other.eye = {0.2f, 0.1f, 4};
+        other.target = {0.2f, 0.1f, 0};
+        o.motion_after = Shot{other, {}};
+        const RenderResult r = render(scene, o);
+        int pixels = 0;
+        for (std::size_t i = 0; i < 200 * 200; ++i) {
+            const float* v = r.motion.data<float>() + 4 * i;
+            if (v[0] == 0) continue;
+            ++pixels;
+            EXPECT_EQ(r.motion_seen.data<std::uint32_t>()[i], 3u);
+            EXPECT_NEAR(v[0], -0.2 / 4 * 100 / std::tan(0.45), 1e-3);
+            EXPECT_NEAR(v[1], 0.1 / 4 * 100 / std::tan(0.45), 1e-3);
+        }
+        EXPECT_GT(pixels, 400 * 5);
+    }
+}
+
 // Warm renderers keep nothing of another picture.
 TEST(MotionVectors, BEY2_ASequenceIsThePicturesByThemselves) {
     const Scene scene = scene_file("motion.gltf");
