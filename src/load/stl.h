@@ -12,7 +12,8 @@
 namespace tessera {
 
 // Binary STL has no mark of its own: its size has to fit the number of triangles in it. ASCII begins
-// with "solid", which headers of binary ones do, too.
+// with "solid", in any case and after comments, which headers of binary ones do, too: these have bytes that are no
+// text.
 bool is_binary_stl(std::span<const std::byte> file);
 bool is_ascii_stl(std::span<const std::byte> file);
 

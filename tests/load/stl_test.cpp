@@ -57,6 +57,51 @@ TEST(Stl, AsciiGivesTheSameTrianglesBySolid) {
     EXPECT_EQ(load_text(kAscii, "<stdin>").meshes.size(), 2u);  // told by content
 }
 
+// Headers of binary files may begin with "solid", also where the count and the size disagree.
+TEST(Stl, BinaryWithSolidInItsHeaderIsNeverReadAsText) {
+    const std::string tail("\0\0", 2);
+    const Scene longer = load_text(binary_stl(kTwo, "solid part") + tail, "part.stl");
+    EXPECT_EQ(longer.meshes.at(0).primitives.at(0).positions, kTwo);
+    ASSERT_EQ(longer.warnings.size(), 1u);
+    EXPECT_NE(longer.warnings[0].find("2 bytes behind the 2 triangles"), std::string::npos) << longer.warnings[0];
+    std::string cut = binary_stl(kTwo, "solid part");
+    cut.resize(cut.size() - 20);
+    EXPECT_NE(load_error(cut, "part.stl").find("2 triangles do not fit"), std::string::npos);
+    EXPECT_NE(load_error("solid part\nendsolid part\n", "part.stl").find("no facet"), std::string::npos);
+}
+
+TEST(Stl, ACountThatWasNeverFilledInComesFromTheSize) {
+    for (const char* header : {"made by a test", "solid part"}) {
+        std::string file = binary_stl(kTwo, header);
+        file.replace(80, 4, 4, '\0');
+        const Scene scene = load_text(file, "part.stl");
+        EXPECT_EQ(scene.meshes.at(0).primitives.at(0).positions, kTwo);
+        ASSERT_EQ(scene.warnings.size(), 1u);
+        EXPECT_NE(scene.warnings[0].find("the 2 that follow"), std::string::npos) << scene.warnings[0];
+    }
+}
+
+TEST(Stl, AsciiInEveryDress) {
+    const auto expect_two = [](const std::string& text, const char* what) {
+        const Scene scene = load_text(text, "part.stl");
+        ASSERT_EQ(scene.meshes.size(), 2u) << what;
+        EXPECT_EQ(scene.meshes[0].primitives.at(0).positions, std::vector<Vec3>(kTwo.begin(), kTwo.begin() + 3))
+            << what;
+        EXPECT_EQ(scene.meshes[1].primitives.at(0).positions, std::vector<Vec3>(kTwo.begin() + 3, kTwo.end())) << what;
+        EXPECT_EQ(scene.meshes[0].name.size(), std::string_view("first part").size()) << what;
+        EXPECT_TRUE(scene.warnings.empty()) << what;
+    };
+    const std::string text = kAscii;
+    std::string upper = text, line = text;
+    for (char& c : upper) c = c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
+    for (char& c : line) c = c == '\n' ? ' ' : c;
+    expect_two(upper, "upper case");
+    expect_two(line, "one line");
+    expect_two("\xef\xbb\xbf" + text, "byte order mark");
+    expect_two("\n \t\r\n" + text, "white space");
+    expect_two("; made by hand\n# and\n// so on\n" + text, "comments");
+}
+
 TEST(Stl, DamageIsNamed) {
     std::string cut = binary_stl(kTwo);
     cut.resize(cut.size() - 1);
