@@ -74,6 +74,10 @@ void add_batch_options(CLI::App& app, BatchArguments& a) {
         ->group("Input and output");
     option("Input and output", "--report", a.report, "FILE", "say what happened, as JSON (- for stdout)");
     add_picture_options(app, a.render);
+    app.get_option("--camera")
+        ->description("the scenes' cameras: names or indices with commas, or all (default: the first)");
+    app.get_option("--timeout")
+        ->description("give up a scene after so many seconds (exit code 6); loading is not interrupted");
 
     option("Farm", "--shard", a.shard, "I/N",
            "do part I (from 1) of N only; auto/N takes I, and without --shard both are taken, from the environment of "
@@ -127,6 +131,7 @@ BatchJob parse_batch_arguments(const BatchArguments& a) {
     job.in_flight =
         a.in_flight.empty() ? job.threads : static_cast<int>(parse_integer("--in-flight", a.in_flight, 1, 1024));
     job.report = a.report;
+    job.list = a.list;
     parse_reference(a, job);
     return job;
 }

@@ -25,6 +25,7 @@ struct BatchArguments {
 
 struct BatchJob {
     RenderJob render;
+    std::string list;                  // file that scenes were taken from, or ""
     std::string pattern;               // of the outputs' names
     std::vector<std::string> cameras;  // that were asked for; empty: each scene's default view
     bool every_camera = false;         // all that a scene has, in place of those

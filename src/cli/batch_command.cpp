@@ -5,13 +5,16 @@
 #include "cli/commands.h"
 #include "cli/comparison_page.h"
 #include "cli/files.h"
+#include "cli/parse.h"
 #include "cli/report.h"
 #include "cli/video.h"
 
 #include <tessera/error.h>
 
 #include <cstdio>
+#include <filesystem>
 #include <memory>
+#include <system_error>
 
 namespace tessera::cli {
 namespace {
@@ -23,15 +26,22 @@ void check_report(const std::string& file) {
 
 // What can be known to be in vain before anything is drawn.
 void check_outputs(const BatchJob& job, const std::vector<SceneFile>& scenes) {
-    check_names(job, scenes);
+    const InputFiles inputs(scenes, job.list);
+    check_names(job, scenes, inputs);
+    if (!job.report.empty()) inputs.check("--report", job.report);
+    if (job.reference) inputs.check("--html", job.page);
     const std::string folder = fixed_folder(job.pattern);
     make_folders_of(folder);
-    check_writable(folder + "x");
+    check_folder_writable(folder);
     if (job.render.codec == Codec::kVideo) find_ffmpeg(job.pattern);
     if (!job.report.empty()) check_report(job.report);
     if (!job.reference) return;
     if (!is_folder(job.reference->folder))
         throw Error(ErrorCode::kInput, "--reference: is not a folder", job.reference->folder);
+    std::error_code unknown;
+    if (std::filesystem::equivalent(folder.empty() ? "." : folder, job.reference->folder, unknown))
+        refuse("--reference",
+               "'" + job.reference->folder + "' is the folder of --output: its pictures would be written over");
     check_report(job.page);
 }
 
@@ -44,11 +54,11 @@ int run(const CLI::App& app, const BatchArguments& arguments) {
                      job.shard.from.c_str());
 
     ProgressBar bar(!job.quiet);
-    BatchReport report = run_batch(job, scenes, [&](const SceneReport& scene, std::size_t left) {
+    BatchReport report = run_batch(job, scenes, [&](const SceneReport& scene, std::size_t left, std::size_t all) {
         bar.clear();
         if (!job.quiet) report_warnings(scene.file, scene.warnings);
         if (scene.status == SceneStatus::kFailed) report_error(scene.error);
-        bar.show(1 - static_cast<double>(left) / static_cast<double>(scenes.size()));
+        bar.show(1 - static_cast<double>(left) / static_cast<double>(all));
     });
     bar.clear();
     report.options = given_options(app);

@@ -6,6 +6,9 @@
 
 #include <tessera/error.h>
 
+#include <filesystem>
+#include <system_error>
+
 namespace tessera::cli {
 namespace {
 
@@ -14,6 +17,8 @@ namespace {
                                        : "'" + name + "' would be written from " + first + " and from " + second +
                                              "; names can have {path}, {folder} and {extension} too");
 }
+
+std::string name_in_folder(const std::string& path) { return path.substr(path.rfind('/') + 1); }
 
 }  // namespace
 
@@ -44,7 +49,22 @@ std::vector<std::string> output_names(const BatchJob& job, const SceneFile& scen
     return names;
 }
 
-void check_names(const BatchJob& job, const std::vector<SceneFile>& scenes) {
+InputFiles::InputFiles(const std::vector<SceneFile>& scenes, const std::string& list) {
+    for (const SceneFile& scene : scenes) by_name_.emplace(name_in_folder(scene.file), scene.file);
+    if (!list.empty() && list != "-") by_name_.emplace(name_in_folder(list), list);
+}
+
+void InputFiles::check(const std::string& option, const std::string& name) const {
+    // A file that is renamed to an input's place has its last name; whether the folder is the same, the system knows.
+    const auto [first, last] = by_name_.equal_range(name_in_folder(name));
+    for (auto input = first; input != last; ++input) {
+        std::error_code unknown;
+        if (input->second == name || std::filesystem::equivalent(input->second, name, unknown))
+            refuse(option, "'" + name + "' would be written over " + input->second + ", which is read");
+    }
+}
+
+void check_names(const BatchJob& job, const std::vector<SceneFile>& scenes, const InputFiles& inputs) {
     // A camera that is not known yet is a name that no file has.
     std::vector<std::string> cameras = job.cameras;
     if (job.every_camera) cameras = {"\x01"};
@@ -56,15 +76,18 @@ void check_names(const BatchJob& job, const std::vector<SceneFile>& scenes) {
     constexpr std::uint64_t kMany = std::uint64_t{1} << 20;
     const bool all = pictures * cameras.size() * scenes.size() <= kMany;
     std::unordered_map<std::string, std::size_t> owners;
-    for (std::size_t s = 0; s < scenes.size(); ++s)
+    for (std::size_t s = 0; s < scenes.size(); ++s) {
+        if (!scenes[s].error.empty()) continue;
         for (const std::string& camera : cameras)
             for (std::uint64_t i = 0; i < (all ? pictures : 1); ++i) {
                 const auto frame = numbered ? std::optional(frames->first + static_cast<long>(i)) : std::nullopt;
                 for (const std::string& name : output_names(job, scenes[s], camera, frame)) {
                     const auto [owner, is_new] = owners.try_emplace(name, s);
                     if (!is_new) refuse_clash(name, scenes[owner->second].file, scenes[s].file);
+                    inputs.check("--output", name);
                 }
             }
+    }
 }
 
 void Claims::claim(const std::string& name, const std::string& scene) {

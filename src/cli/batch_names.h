@@ -20,9 +20,21 @@ std::string fixed_folder(const std::string& pattern);
 std::vector<std::string> output_names(const BatchJob& job, const SceneFile& scene, const std::string& camera,
                                       std::optional<long> frame);
 
-// Throws kUsage, naming both scenes, where two of the list would write one file. Cameras that only the scenes
-// know are left to Claims.
-void check_names(const BatchJob& job, const std::vector<SceneFile>& scenes);
+// The files that a batch reads and must not write: its scenes and their list. Any thread may call.
+class InputFiles {
+  public:
+    // `list` may be "", or "-".
+    InputFiles(const std::vector<SceneFile>& scenes, const std::string& list);
+    // Throws kUsage, naming the option, when `name` is one of them.
+    void check(const std::string& option, const std::string& name) const;
+
+  private:
+    std::unordered_multimap<std::string, std::string> by_name_;  // without and with folders
+};
+
+// Throws kUsage, naming both scenes, where two of the list would write one file, or one would write an input.
+// Cameras that only the scenes know are left to Claims.
+void check_names(const BatchJob& job, const std::vector<SceneFile>& scenes, const InputFiles& inputs);
 
 // Names that are taken. Any thread may call.
 class Claims {

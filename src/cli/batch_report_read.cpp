@@ -6,6 +6,7 @@
 #include <simdjson.h>
 
 #include <algorithm>
+#include <limits>
 
 namespace tessera::cli {
 namespace {
@@ -46,6 +47,11 @@ class Reader {
         return static_cast<T>(value);
     }
 
+    // JSON has no infinity: it is written as null.
+    double error(const element& object, const char* key) const {
+        return object[key].is_null() ? std::numeric_limits<double>::infinity() : get<double>(object, key);
+    }
+
     Comparison comparison(const element& e) const {
         Comparison c;
         const std::string verdict = text(e, "verdict");
@@ -60,8 +66,8 @@ class Reader {
         c.pixels = get<std::uint64_t>(e, "pixels");
         c.differing_pixels = get<std::uint64_t>(e, "differing_pixels");
         c.floating = text(e, "unit") == "1";
-        c.max_error = get<double>(e, "max_error");
-        c.mean_error = get<double>(e, "mean_error");
+        c.max_error = error(e, "max_error");
+        c.mean_error = error(e, "mean_error");
         if (!e["psnr_db"].is_null()) c.psnr = get<double>(e, "psnr_db");
         return c;
     }

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <exception>
 #include <mutex>
 #include <thread>
 #include <utility>
@@ -27,7 +28,7 @@ std::string list_hash(const std::vector<SceneFile>& scenes) {
 class Run {
   public:
     Run(const BatchJob& job, const std::vector<SceneFile>& scenes, const SceneDone& done)
-        : job_(job), scenes_(scenes), done_(done), shared_{job, {}, {}} {
+        : job_(job), scenes_(scenes), done_(done), shared_{job, InputFiles(scenes, job.list), {}, {}} {
         for (std::size_t i = 0; i < scenes.size(); ++i)
             if (job.shard_frames || job.shard.has(i)) mine_.push_back(i);
         left_ = mine_.size();
@@ -36,10 +37,8 @@ class Run {
 
     BatchReport run() {
         const Stopwatch watch;
-        std::vector<std::thread> helpers;
-        for (int i = 1; i < workers_; ++i) helpers.emplace_back([this] { work(); });
-        work();
-        for (std::thread& helper : helpers) helper.join();
+        const int workers = start_and_work();
+        if (failure_) std::rethrow_exception(failure_);
         do_large_ones();
 
         std::sort(report_.scenes.begin(), report_.scenes.end(),
@@ -48,32 +47,58 @@ class Run {
         report_.list_hash = list_hash(scenes_);
         report_.shards = {job_.shard.index}, report_.shard_count = job_.shard.count;
         report_.shard_by = job_.shard_frames ? "frame" : "scene";
-        report_.threads = job_.threads, report_.in_flight = workers_;
+        report_.threads = job_.threads, report_.in_flight = workers;
         report_.wall_ms = watch.milliseconds();
         report_.peak_rss_mb = peak_memory_mb();
         return std::move(report_);
     }
 
   private:
-    void work() {
-        SceneWorker worker(shared_);
-        SceneShare share;
-        share.scene_bytes =
-            std::max<std::uint64_t>(1, job_.render.load.max_bytes / static_cast<std::uint64_t>(workers_));
-        share.frame_bytes =
-            std::max<std::uint64_t>(1, job_.render.render.max_bytes / static_cast<std::uint64_t>(workers_));
-        for (std::size_t number; take(number, share.threads);) {
-            SceneReport report = worker.run(scenes_[number], number, share);
-            finish(std::move(report), worker.hit_limit() && workers_ > 1);
+    // Returns how many threads there were.
+    int start_and_work() {
+        const int wanted = workers_;
+        std::vector<std::thread> helpers;
+        helpers.reserve(static_cast<std::size_t>(wanted));
+        try {
+            for (int i = 1; i < wanted; ++i) helpers.emplace_back([this] { work(); });
+        } catch (const std::exception&) {
+            // No thread, or no memory for one.
+            const std::lock_guard lock(mutex_);
+            workers_ = 1 + static_cast<int>(helpers.size());
+        }
+        work();
+        for (std::thread& helper : helpers) helper.join();
+        return 1 + static_cast<int>(helpers.size());
+    }
+
+    // Nothing is thrown out of a thread; the first failure ends the batch.
+    void work() noexcept {
+        try {
+            SceneWorker worker(shared_);
+            SceneShare share;
+            bool alone = false;
+            for (std::size_t number; take(number, share, alone);) {
+                SceneReport report = worker.run(scenes_[number], number, share);
+                finish(std::move(report), worker.hit_limit() && !alone);
+            }
+        } catch (...) {
+            const std::lock_guard lock(mutex_);
+            if (!failure_) failure_ = std::current_exception();
+            next_ = mine_.size();
         }
     }
 
-    // The next scene, and the threads for it: a fair part of them among the scenes that are left.
-    bool take(std::size_t& number, int& threads) {
+    // The next scene, and what it may take: a fair part of the threads among the scenes that are left, and of the
+    // memory among the scenes in flight.
+    bool take(std::size_t& number, SceneShare& share, bool& alone) {
         const std::lock_guard lock(mutex_);
         if (next_ == mine_.size()) return false;
         const auto rivals = static_cast<int>(std::min(left_, static_cast<std::size_t>(workers_)));
-        threads = std::max(1, job_.threads / rivals);
+        const auto parts = static_cast<std::uint64_t>(workers_);
+        share.threads = std::max(1, job_.threads / rivals);
+        share.scene_bytes = std::max<std::uint64_t>(1, job_.render.load.max_bytes / parts);
+        share.frame_bytes = std::max<std::uint64_t>(1, job_.render.render.max_bytes / parts);
+        alone = workers_ == 1;
         number = mine_[next_++];
         return true;
     }
@@ -85,7 +110,7 @@ class Run {
             return;
         }
         --left_;
-        done_(report, left_);
+        done_(report, left_, mine_.size());
         report_.scenes.push_back(std::move(report));
     }
 
@@ -102,10 +127,11 @@ class Run {
     const std::vector<SceneFile>& scenes_;
     const SceneDone& done_;
     BatchShared shared_;
-    int workers_ = 1;
     std::vector<std::size_t> mine_;  // of this shard, by number in the list
 
     std::mutex mutex_;  // of all that follows
+    int workers_ = 1;
+    std::exception_ptr failure_;
     std::size_t next_ = 0, left_ = 0;
     std::vector<std::size_t> large_;
     BatchReport report_;

@@ -12,9 +12,9 @@
 
 namespace tessera::cli {
 
-// `done` is called for every scene as it ends, one call at a time; `left` scenes are to come. The report has everything
-// but the options.
-using SceneDone = std::function<void(const SceneReport& scene, std::size_t left)>;
+// `done` is called for every scene as it ends, one call at a time; `left` of `all` scenes of the shard are to come. The
+// report has everything but the options. Where the system has no more threads, those that there are do all of it.
+using SceneDone = std::function<void(const SceneReport& scene, std::size_t left, std::size_t all)>;
 BatchReport run_batch(const BatchJob& job, const std::vector<SceneFile>& scenes, const SceneDone& done);
 
 }  // namespace tessera::cli

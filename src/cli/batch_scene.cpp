@@ -2,6 +2,7 @@
 
 #include "cli/files.h"
 #include "cli/parse.h"
+#include "cli/pattern.h"
 #include "cli/planes.h"
 #include "cli/scene_input.h"
 #include "cli/scene_setup.h"
@@ -10,11 +11,12 @@
 
 #include <tessera/error.h>
 
-#include <unistd.h>
+#include <sys/stat.h>
 
 #include <algorithm>
 #include <cstdio>
 #include <exception>
+#include <map>
 #include <new>
 #include <set>
 #include <string_view>
@@ -29,18 +31,29 @@ std::string hash_text(std::uint64_t hash) {
     return text;
 }
 
-bool exists(const std::string& file) { return ::access(file.c_str(), F_OK) == 0; }
+bool is_plain_file(const std::string& file) {
+    struct stat info {};
+    return ::stat(file.c_str(), &info) == 0 && S_ISREG(info.st_mode);
+}
 
-// The names of all cameras that the active scene can be seen from; numbers where a name is missing or not unique.
+// Names of all cameras, by index; numbers where a name is missing, not the only one of its kind in names of files, or
+// the number of any camera.
 std::vector<std::string> cameras_of(const Scene& scene) {
+    std::map<std::string, int> uses;
+    for (std::size_t i = 0; i < scene.cameras.size(); ++i) {
+        ++uses[safe_name(scene.cameras[i].name)];
+        ++uses[std::to_string(i)];
+    }
     std::vector<std::string> names;
     for (std::size_t i = 0; i < scene.cameras.size(); ++i) {
         const std::string& name = scene.cameras[i].name;
-        const auto same =
-            std::count_if(scene.cameras.begin(), scene.cameras.end(), [&](const Camera& c) { return c.name == name; });
-        names.push_back(name.empty() || same > 1 ? std::to_string(i) : name);
+        names.push_back(name.empty() || uses[safe_name(name)] > 1 ? std::to_string(i) : name);
     }
     return names;
+}
+
+void check_time(const RenderJob& job) {
+    if (job.render.cancel && job.render.cancel()) throw Error(ErrorCode::kCancelled, "");
 }
 
 std::string timeout_text(double seconds) {
@@ -83,6 +96,7 @@ bool SceneWorker::Output::complete() const {
 }
 
 void SceneWorker::run_outputs(const SceneFile& file, const SceneShare& share, SceneReport& report) {
+    if (!file.error.empty()) throw Error(ErrorCode::kInput, file.error, file.file);
     std::vector<Output> outputs;
     if (!job_.every_camera) outputs = plan(file, job_.cameras, report.number);
     const auto nothing_to_do = [&] {
@@ -102,7 +116,7 @@ void SceneWorker::run_outputs(const SceneFile& file, const SceneShare& share, Sc
     if (job.timeout) job.render.cancel = [watch, limit = 1000 * *job.timeout] { return watch.milliseconds() > limit; };
     Scene scene = load_input(file.file, job.load);
     report.load_ms = watch.milliseconds();
-    if (job.render.cancel && job.render.cancel()) throw Error(ErrorCode::kCancelled, "");
+    check_time(job);
     set_up(job, scene);
     std::vector<std::string> cameras = job_.cameras;
     if (job_.every_camera) {
@@ -113,9 +127,9 @@ void SceneWorker::run_outputs(const SceneFile& file, const SceneShare& share, Sc
     }
     // Poses are the file's, and turned already.
     if (job.poses.empty())
-        for (const std::string& camera : cameras) {
-            job.poses.push_back({camera, job.render.view});
-            job.poses.back().view.camera = find_camera(scene, camera);
+        for (std::size_t i = 0; i < cameras.size(); ++i) {
+            job.poses.push_back({cameras[i], job.render.view});
+            job.poses.back().view.camera = job_.every_camera ? static_cast<int>(i) : find_camera(scene, cameras[i]);
         }
     report.warnings = scene.warnings;
     draw(job, scene, outputs, report);
@@ -128,8 +142,9 @@ SceneWorker::Output SceneWorker::plan_one(const SceneFile& file, long shot, cons
     output.files = output_names(job_, file, camera, frame);
     for (const std::string& name : output.files) {
         shared_.claims.claim(name, file.file);
+        shared_.inputs.check("--output", name);
         shared_.stale.remove(name);
-        output.missing.push_back(!job_.skip_existing || !exists(name));
+        output.missing.push_back(!job_.skip_existing || !is_plain_file(name));
     }
     return output;
 }
@@ -163,7 +178,10 @@ void SceneWorker::draw(const RenderJob& job, const Scene& scene, const std::vect
     std::optional<Renderer> renderer;
     for (const Output& output : outputs) {
         for (std::size_t i = 0; i < output.files.size(); ++i)
-            if (!output.missing[i]) add_existing(output, i, report);
+            if (!output.missing[i]) {
+                add_existing(output, i, report);
+                check_time(job);
+            }
         if (output.complete()) continue;
         const Stopwatch watch;
         const bool first = !renderer;
@@ -194,10 +212,12 @@ void SceneWorker::write_picture(const RenderJob& job, const Output& output, Scen
         if (planes.planes.size() == 1)
             picture.hash = hash_text(&plane == &planes_.color ? planes_.stats.color_hash : hash_pixels(plane));
         const std::vector<std::byte> file = encode_planes(job.planes, planes, planes_);
+        check_time(job);
         make_folders_of(picture.file);
         write_output(picture.file, file);
         compare(picture, file);
         report.pictures.push_back(std::move(picture));
+        check_time(job);
     }
     report.encode_ms += watch.milliseconds();
 }

@@ -23,6 +23,7 @@ namespace tessera::cli {
 // What the workers of a batch share.
 struct BatchShared {
     const BatchJob& job;
+    InputFiles inputs;
     Claims claims;
     StaleFiles stale;
 };

@@ -71,13 +71,16 @@ std::string shown(double value, const char* form) {
 }
 
 const char* media_type(const std::vector<std::byte>& file) {
-    const auto begins = [&](std::string_view magic) {
-        return file.size() > magic.size() &&
-               std::equal(magic.begin(), magic.end(), file.begin(), [](char a, std::byte b) {
+    const auto begins = [&](std::string_view magic, std::size_t from = 0) {
+        return file.size() > from + magic.size() &&
+               std::equal(magic.begin(), magic.end(), file.data() + from, [](char a, std::byte b) {
                    return static_cast<unsigned char>(a) == static_cast<unsigned char>(b);
                });
     };
-    return begins("\x89PNG") ? "image/png" : begins("\xff\xd8\xff") ? "image/jpeg" : nullptr;
+    constexpr std::size_t kWebpMark = 8;  // after "RIFF" and a size
+    if (begins("\x89PNG")) return "image/png";
+    if (begins("\xff\xd8\xff")) return "image/jpeg";
+    return begins("RIFF") && begins("WEBP", kWebpMark) ? "image/webp" : nullptr;
 }
 
 // What is wrong, in words.
@@ -123,7 +126,7 @@ class Page {
             data = read_file(file);
             type = media_type(data);
         } catch (const Error&) {
-            // It may be on another machine; its name is all there is to say.
+            ++unread_;  // it may be on another machine; its name is all there is to say
         }
         if (type != nullptr && data.size() <= left_) {
             left_ -= data.size();
@@ -137,11 +140,12 @@ class Page {
     }
 
     std::uint64_t left_out() const { return left_out_; }
+    std::uint64_t unread() const { return unread_; }
     std::string text() { return std::move(text_); }
 
   private:
     std::string text_;
-    std::uint64_t left_, left_out_ = 0;
+    std::uint64_t left_, left_out_ = 0, unread_ = 0;
 };
 
 void add_comparison(Page& page, const PictureReport& picture) {
@@ -178,9 +182,10 @@ std::vector<const PictureReport*> by_severity(const BatchReport& report) {
 void add_head(Page& page, const BatchReport& report) {
     const BatchTotals t = totals(report);
     const bool good = exit_code(report) == kFine;
-    const std::string verdict = t.failed > 0 || t.differ > 0 ? std::to_string(t.differ) + " of " +
-                                                                   std::to_string(t.compared) + " pictures differ"
-                                                             : "all " + std::to_string(t.compared) + " pictures pass";
+    std::string verdict = t.failed > 0 || t.differ > 0
+                              ? std::to_string(t.differ) + " of " + std::to_string(t.compared) + " pictures differ"
+                              : "all " + std::to_string(t.compared) + " pictures pass";
+    if (t.failed > 0) verdict += ", " + std::to_string(t.failed) + (t.failed == 1 ? " scene" : " scenes") + " failed";
     page.add(
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" "
         "content=\"width=device-width, initial-scale=1\">\n<title>Tessera: " +
@@ -225,6 +230,8 @@ std::string comparison_page(const BatchReport& report, std::uint64_t max_bytes) 
     if (page.left_out() > 0)
         page.add("<p>" + std::to_string(page.left_out()) +
                  " pictures are not in this page, which would be too large.</p>\n");
+    if (page.unread() > 0)
+        page.add("<p>" + std::to_string(page.unread()) + " files could not be read and are not in this page.</p>\n");
     page.add("</body>\n</html>\n");
     return page.text();
 }

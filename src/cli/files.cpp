@@ -63,7 +63,7 @@ std::vector<std::byte> read_file(const std::string& path) {
     const auto fail = [&](int error) {
         throw Error(ErrorCode::kInput, std::string("cannot be read: ") + std::strerror(error), path);
     };
-    const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+    const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
     if (descriptor < 0) fail(errno);
     struct stat info {};
     std::vector<std::byte> data;
@@ -93,6 +93,12 @@ void make_folders_of(const std::string& path) {
     std::error_code error;
     std::filesystem::create_directories(folder_of(path), error);
     if (error) fail_output(path, error.value());
+}
+
+void check_folder_writable(const std::string& folder) {
+    const std::string path = folder.empty() ? "." : folder;
+    if (!is_folder(path)) fail_output(path, ENOTDIR);
+    if (::access(path.c_str(), W_OK | X_OK) != 0) fail_output(path, errno);
 }
 
 void check_writable(const std::string& path) {

@@ -15,12 +15,14 @@ namespace tessera::cli {
 // All of standard input; kLimit when it exceeds `max_bytes`.
 std::vector<std::byte> read_stdin(std::uint64_t max_bytes);
 
-// All of a file; kInput, naming it, when it cannot be read.
+// All of a plain file; kInput, naming it, when it is none or cannot be read. Never waits, as for a pipe.
 std::vector<std::byte> read_file(const std::string& path);
 
 bool is_folder(const std::string& path);
 // Makes the folders in which `path` lies, where they are missing.
 void make_folders_of(const std::string& path);
+// Throws kOutput now if nothing could be written in the folder; "" is the current one.
+void check_folder_writable(const std::string& folder);
 // Throws kOutput now if `path` could not be written later: no such folder, or a folder itself.
 void check_writable(const std::string& path);
 void write_output(const std::string& path, std::span<const std::byte> data);

@@ -3,6 +3,7 @@
 #include "cli/commands.h"
 #include "cli/exit_code.h"
 #include "cli/report.h"
+#include "cli/temporary_file.h"
 
 #include <tessera/error.h>
 #include <tessera/render.h>
@@ -101,6 +102,7 @@ int main(int argc, char** argv) {
     // A closed pipe and a file-size limit shall be errors with an exit code, not signals.
     std::signal(SIGPIPE, SIG_IGN);
     std::signal(SIGXFSZ, SIG_IGN);
+    remember_umask();
     try {
         return parse_and_run(argc, argv);
     } catch (const tessera::Error& error) {

@@ -86,9 +86,9 @@ void join_scenes(BatchReport& whole) {
         SceneReport& s = joined.back();
         s.load_ms += scene.load_ms, s.render_ms += scene.render_ms, s.encode_ms += scene.encode_ms;
         std::move(scene.pictures.begin(), scene.pictures.end(), std::back_inserter(s.pictures));
-        std::stable_sort(s.pictures.begin(), s.pictures.end(), [](const PictureReport& a, const PictureReport& b) {
-            return std::pair(a.camera, a.frame) < std::pair(b.camera, b.frame);
-        });
+        // All cameras of a frame are in one shard, in the order of the undivided batch.
+        std::stable_sort(s.pictures.begin(), s.pictures.end(),
+                         [](const PictureReport& a, const PictureReport& b) { return a.frame < b.frame; });
         if (s.warnings.empty()) s.warnings = std::move(scene.warnings);
         if (scene.status == SceneStatus::kFailed && s.status != SceneStatus::kFailed)
             s.status = scene.status, s.exit_code = scene.exit_code, s.error = scene.error;
@@ -138,8 +138,11 @@ BatchReport merge(const std::vector<std::string>& files, bool partial) {
 int run(const MergeArguments& arguments) {
     if (arguments.output.empty() && arguments.page.empty())
         refuse("--output", "say where the report goes: -o FILE, or -o -");
-    for (const std::string& file : {arguments.output, arguments.page})
-        if (!file.empty()) check_writable(file);
+    for (const std::string& file : {arguments.output, arguments.page}) {
+        if (file.empty()) continue;
+        if (file != "-") make_folders_of(file);
+        check_writable(file);
+    }
     const BatchReport whole = merge(arguments.reports, arguments.partial);
     if (!arguments.output.empty()) write_output(arguments.output, report_json(whole));
     if (!arguments.page.empty()) write_output(arguments.page, comparison_page(whole, kPageBytes));

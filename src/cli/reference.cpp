@@ -78,11 +78,15 @@ Measured measure(File earlier, File written, const ReferenceOptions& options) {
     return measure_pictures(earlier, written, options);
 }
 
+std::string difference_file(const ReferenceOptions& options, const std::string& name) {
+    return (fs::path(options.differences) / (name + ".difference.png")).string();
+}
+
 // The picture of the difference of two that are seen as pictures.
 void write_difference(const ReferenceOptions& options, const std::string& name, File earlier, File written,
                       bool floating, Comparison& c) {
     const DecodeOptions shown{options.max_pixels, false, floating};
-    c.difference = (fs::path(options.differences) / (name + ".difference.png")).string();
+    c.difference = difference_file(options, name);
     make_folders_of(c.difference);
     PngOptions png;
     png.threads = 1;
@@ -98,6 +102,7 @@ Comparison compare_with_reference(const ReferenceOptions& options, const std::st
     Comparison c;
     c.reference = (fs::path(options.folder) / name).string();
     std::error_code unknown;
+    fs::remove(difference_file(options, name), unknown);  // that of an earlier run
     if (!fs::exists(c.reference, unknown)) {
         c.verdict = Verdict::kMissing;
         return c;

@@ -14,7 +14,7 @@ namespace tessera::cli {
 
 struct ReferenceOptions {
     std::string folder;       // of the earlier pictures
-    std::string differences;  // where pictures of the differences go; made when there is one
+    std::string differences;  // where pictures of the differences go; made when there is one, old ones removed
     double tolerance = 0;     // a pixel differs when a channel is off by more, in 1/255 or the own unit
     std::uint64_t max_differing = 0;
     std::uint64_t max_pixels = 0;

@@ -45,28 +45,57 @@ SceneFile make_scene(const fs::path& file, const fs::path& relative) {
     throw Error(ErrorCode::kInput, reason, file);
 }
 
-void search(const fs::path& folder, std::vector<SceneFile>& scenes) {
-    std::error_code error;
-    for (fs::recursive_directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
-        const fs::path& path = entry->path();
-        std::error_code unknown;
-        const bool hidden = path.filename().string().starts_with(".");
-        if (hidden && entry->is_directory(unknown)) entry.disable_recursion_pending();
-        if (!hidden && is_scene_name(path) && entry->is_regular_file(unknown))
-            scenes.push_back(make_scene(path, path.lexically_relative(folder)));
-    }
-    if (error) fail(folder.string(), "cannot be searched: " + error.message());
+void add_unusable(const std::string& file, const std::string& reason, std::vector<SceneFile>& scenes) {
+    SceneFile scene;
+    scene.file = file;
+    scene.error = reason;
+    scenes.push_back(std::move(scene));
 }
 
-void add(const std::string& argument, std::vector<SceneFile>& scenes) {
-    std::error_code error;
-    const fs::path path = fs::path(argument).lexically_normal();
-    const fs::file_status status = fs::status(path, error);
-    if (!fs::exists(status)) fail(argument, "does not exist");
+// Links to folders are not followed.
+void search(const fs::path& top, std::vector<SceneFile>& scenes) {
+    std::vector<fs::path> folders{top};
+    while (!folders.empty()) {
+        const fs::path folder = std::move(folders.back());
+        folders.pop_back();
+        std::error_code error;
+        for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
+            const fs::path& path = entry->path();
+            std::error_code unknown;
+            if (path.filename().string().starts_with(".")) continue;
+            if (entry->is_directory(unknown)) {
+                if (!entry->is_symlink(unknown)) folders.push_back(path);
+            } else if (is_scene_name(path) && entry->is_regular_file(unknown)) {
+                scenes.push_back(make_scene(path, path.lexically_relative(top)));
+            }
+        }
+        if (error) add_unusable(folder.string(), "cannot be searched: " + error.message(), scenes);
+    }
+}
+
+void add(const fs::path& path, const fs::file_status& status, std::vector<SceneFile>& scenes) {
     if (fs::is_directory(status))
         search(path, scenes);
     else
         scenes.push_back(make_scene(path, path));
+}
+
+void add_argument(const std::string& argument, std::vector<SceneFile>& scenes) {
+    std::error_code unknown;
+    const fs::path path = fs::path(argument).lexically_normal();
+    const fs::file_status status = fs::status(path, unknown);
+    if (!fs::exists(status)) fail(argument, "does not exist");
+    add(path, status, scenes);
+}
+
+void add_line(const std::string& line, std::vector<SceneFile>& scenes) {
+    std::error_code unknown;
+    const fs::path path = fs::path(line).lexically_normal();
+    const fs::file_status status = fs::status(path, unknown);
+    if (fs::exists(status))
+        add(path, status, scenes);
+    else
+        add_unusable(path.string(), "does not exist", scenes);
 }
 
 std::vector<std::string> lines_of(const std::string& list) {
@@ -76,9 +105,14 @@ std::vector<std::string> lines_of(const std::string& list) {
         const std::vector<std::byte> bytes = read_stdin(kMostBytes);
         text.assign(reinterpret_cast<const char*>(bytes.data()), bytes.size());
     } else {
+        if (is_folder(list)) fail(list, "is a folder, not a list of scenes; name it without --list");
         std::ifstream file(list, std::ios::binary);
         if (!file) fail(list, "cannot be read");
-        text.assign(std::istreambuf_iterator<char>(file), {});
+        try {
+            text.assign(std::istreambuf_iterator<char>(file), {});
+        } catch (const std::ios_base::failure&) {
+            fail(list, "cannot be read");
+        }
         if (file.bad()) fail(list, "cannot be read");
     }
     std::vector<std::string> lines;
@@ -96,9 +130,9 @@ std::vector<std::string> lines_of(const std::string& list) {
 
 std::vector<SceneFile> list_scenes(const std::vector<std::string>& arguments, const std::string& list) {
     std::vector<SceneFile> scenes;
-    for (const std::string& argument : arguments) add(argument, scenes);
+    for (const std::string& argument : arguments) add_argument(argument, scenes);
     if (!list.empty())
-        for (const std::string& line : lines_of(list)) add(line, scenes);
+        for (const std::string& line : lines_of(list)) add_line(line, scenes);
     if (arguments.empty() && list.empty()) refuse("scenes", "say which: files, folders, or --list FILE");
     if (scenes.empty())
         throw Error(ErrorCode::kInput, "no scenes there: no file ends in .gltf, .glb, .obj, .ply, .stl or .zip");

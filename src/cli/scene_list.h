@@ -12,11 +12,12 @@ struct SceneFile {
     std::string folder;     // of `path`; "." without one
     std::string model;      // the name alone, without its ending
     std::string extension;  // without the dot
+    std::string error;      // why it cannot be read, known already; "" for none
 };
 
 // `arguments` are files and folders, which are searched for names that end like scenes; `list` is a file with a path
-// per line
-// ("-": stdin), or "". Throws kInput for what is not there, kUsage when there is nothing at all.
+// per line ("-": stdin), or "". Throws kInput for arguments that are not there, kUsage when there is nothing at all. A
+// line whose path is not there, and a folder that cannot be read, is in the result with its error.
 std::vector<SceneFile> list_scenes(const std::vector<std::string>& arguments, const std::string& list);
 
 }  // namespace tessera::cli

@@ -24,15 +24,43 @@ constexpr std::size_t kRandom = 6;
     throw Error(ErrorCode::kOutput, "cannot be written: " + std::string(std::strerror(error)), target);
 }
 
+mode_t usual_mask() {
+    static const mode_t mask = [] {
+        const mode_t set = ::umask(0);
+        ::umask(set);
+        return set;
+    }();
+    return mask;
+}
+
 }  // namespace
 
+void remember_umask() { usual_mask(); }
+
 TemporaryFile::TemporaryFile(std::string target) : target_(std::move(target)) {
-    name_ = target_;
-    name_ += kMark;
-    name_.append(kRandom, 'X');
-    descriptor_ = ::mkostemp(name_.data(), O_CLOEXEC);
-    if (descriptor_ < 0) fail(target_, errno);
-    ::flock(descriptor_, LOCK_EX | LOCK_NB);  // a file system without locks loses only the cleaning
+    // Another process may take a file that has no lock yet for a leftover; then the next name is tried.
+    constexpr int kTries = 100;
+    for (int i = 0; i < kTries; ++i) {
+        name_ = target_;
+        name_ += kMark;
+        name_.append(kRandom, 'X');
+        descriptor_ = ::mkostemp(name_.data(), O_CLOEXEC);
+        if (descriptor_ < 0) fail(target_, errno);
+        if (lock()) return;
+        ::close(std::exchange(descriptor_, -1));
+    }
+    fail(target_, EBUSY);
+}
+
+// False when the file is, or is being, removed by another process.
+bool TemporaryFile::lock() {
+    int result = 0;
+    while ((result = ::flock(descriptor_, LOCK_EX | LOCK_NB)) != 0 && errno == EINTR) {
+    }
+    if (result != 0 && errno == EWOULDBLOCK) return false;
+    // A file system without locks loses only the cleaning. A name that is gone was taken before the lock.
+    struct stat named {};
+    return ::lstat(name_.c_str(), &named) == 0 || errno != ENOENT;
 }
 
 TemporaryFile::~TemporaryFile() {
@@ -42,13 +70,14 @@ TemporaryFile::~TemporaryFile() {
 
 void TemporaryFile::publish() {
     // mkostemp makes files that only the owner may read; a picture gets the usual rights.
-    const mode_t mask = ::umask(0);
-    ::umask(mask);
-    if (::fchmod(descriptor_, 0666 & ~mask) != 0) fail(target_, errno);
-    // Some file systems say only now that there was no room.
-    if (::close(std::exchange(descriptor_, -1)) != 0) fail(target_, errno);
+    if (::fchmod(descriptor_, 0666 & ~usual_mask()) != 0) fail(target_, errno);
+    // Some file systems say only at a close that there was no room. The lock stays with the other descriptor until the
+    // file has its name.
+    const int copy = ::fcntl(descriptor_, F_DUPFD_CLOEXEC, 0);
+    if (copy < 0 || ::close(copy) != 0) fail(target_, errno);
     if (::rename(name_.c_str(), target_.c_str()) != 0) fail(target_, errno);
     name_.clear();
+    ::close(std::exchange(descriptor_, -1));
 }
 
 std::string folder_of(const std::string& path) {

@@ -25,6 +25,8 @@ class TemporaryFile {
     void publish();
 
   private:
+    bool lock();
+
     std::string target_, name_;
     int descriptor_ = -1;
 };
@@ -40,6 +42,9 @@ class StaleFiles {
     std::mutex mutex_;
     std::map<std::string, Leftovers> folders_;
 };
+
+// Reads the process' umask, which can only be done by setting it. For main(), before there are other threads.
+void remember_umask();
 
 // "." for a bare name.
 std::string folder_of(const std::string& path);

@@ -97,7 +97,8 @@ Words arguments(const std::string& ffmpeg, const Format& format, const Image& fi
             add({"-c:v", "libx264", "-crf", "18", "-preset", "medium"});
         if (muxer == "mp4" || muxer == "mov") add({"-movflags", "+faststart"});
     }
-    add({"-f", muxer, file});
+    // The protocol is said, or a name such as a:b would be taken for an address.
+    add({"-f", muxer, std::string("file:").append(file)});
     return words;
 }
 
