@@ -172,7 +172,8 @@ Command add_diff_command(CLI::App& application) {
         ->option_text("N");
     app->add_option("--max-differing", arguments->max_differing, "so many pixels may differ (default 0)")
         ->option_text("N");
-    app->add_option("--max-pixels", arguments->max_pixels, "refuse larger pictures (default 268435456)")
+    app->add_option("--max-pixels", arguments->max_pixels,
+                    "refuse larger pictures (default 268435456); floating-point ones take 16 bytes a pixel")
         ->option_text("N");
     app->add_flag("--json", arguments->json, "report as JSON");
     return {app, [arguments] { return run(*arguments); }};

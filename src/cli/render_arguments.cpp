@@ -209,7 +209,7 @@ void add_picture_options(CLI::App& app, RenderArguments& a) {
     option("Limits", "--max-triangles", a.max_triangles, "N", "refuse scenes with more (default 16777216)");
     option("Limits", "--max-pixels", a.max_pixels, "N", "refuse larger textures (default 67108864) or pictures");
     option("Limits", "--max-memory", a.max_memory, "BYTES",
-           "memory for the scene (default 1G) and the frame (default 4G)");
+           "memory for the scene (default 1G), and as much for the frame (default 4G)");
     option("Limits", "--timeout", a.timeout, "S", "give up after so many seconds (exit code 6)");
 }
 
