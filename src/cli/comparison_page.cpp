@@ -231,7 +231,8 @@ std::string comparison_page(const BatchReport& report, std::uint64_t max_bytes) 
         page.add("<p>" + std::to_string(page.left_out()) +
                  " pictures are not in this page, which would be too large.</p>\n");
     if (page.unread() > 0)
-        page.add("<p>" + std::to_string(page.unread()) + " files could not be read and are not in this page.</p>\n");
+        page.add("<p>" + std::to_string(page.unread()) + (page.unread() == 1 ? " file" : " files") +
+                 " could not be read, and not shown.</p>\n");
     page.add("</body>\n</html>\n");
     return page.text();
 }

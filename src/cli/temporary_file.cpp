@@ -8,8 +8,10 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <cstdlib>
 #include <cstring>
 #include <filesystem>
+#include <fstream>
 #include <string_view>
 #include <system_error>
 #include <utility>
@@ -24,8 +26,14 @@ constexpr std::size_t kRandom = 6;
     throw Error(ErrorCode::kOutput, "cannot be written: " + std::string(std::strerror(error)), target);
 }
 
+// umask() can only be read by setting it, for all threads: so Linux is asked first, and that once.
 mode_t usual_mask() {
     static const mode_t mask = [] {
+        constexpr std::string_view kName = "Umask:";
+        std::ifstream status("/proc/self/status");
+        for (std::string line; std::getline(status, line);)
+            if (line.starts_with(kName))
+                return static_cast<mode_t>(std::strtoul(line.c_str() + kName.size(), nullptr, 8));
         const mode_t set = ::umask(0);
         ::umask(set);
         return set;

@@ -43,7 +43,7 @@ class StaleFiles {
     std::map<std::string, Leftovers> folders_;
 };
 
-// Reads the process' umask, which can only be done by setting it. For main(), before there are other threads.
+// Reads the process' umask for all files to come. For main(), before there are other threads.
 void remember_umask();
 
 // "." for a bare name.

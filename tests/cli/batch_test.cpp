@@ -126,9 +126,24 @@ TEST_F(CliBatch, BEY3_CamerasByNameAndAll) {
     std::string alike = cameras;
     alike.insert(alike.find("{\"type\":\"perspective\",\"perspective\":{\"yfov\":0.9") + 1, "\"name\":\"front_left\",");
     std::ofstream(folder_ / "c.gltf") << alike;
-    const Outcome run = batch(base + Strings{"all"});
+    const Outcome run = batch(base + Strings{"front/left,front_left"});
     EXPECT_EQ(run.code, 2);
     EXPECT_NE(run.err.find("c_front_left.png' would be written twice"), std::string::npos) << run.err;
+    fs::remove_all(folder_ / "out");
+    ASSERT_EQ(batch(base + Strings{"all"}).code, 0);
+    EXPECT_EQ(names(tree(in_folder("out"))), (Strings{"c_0.png", "c_1.png"}));
+    EXPECT_EQ(tree(in_folder("out")).at("c_0.png"), all.at("c_front_left.png"));
+    EXPECT_EQ(tree(in_folder("out")).at("c_1.png"), all.at("c_1.png"));
+    // Nodes whose names are the numbers of other cameras.
+    std::string numbers = cameras;
+    numbers.replace(numbers.find("{\"name\":\"front/left\","), 21, "{");
+    numbers.insert(numbers.find("\"camera\":0"), "\"name\":\"1\",");
+    numbers.insert(numbers.find("\"camera\":1"), "\"name\":\"0\",");
+    std::ofstream(folder_ / "c.gltf") << numbers;
+    fs::remove_all(folder_ / "out");
+    ASSERT_EQ(batch(base + Strings{"all"}).code, 0);
+    EXPECT_EQ(tree(in_folder("out")).at("c_0.png"), all.at("c_front_left.png"));
+    EXPECT_EQ(tree(in_folder("out")).at("c_1.png"), all.at("c_1.png"));
 }
 
 TEST_F(CliBatch, BEY3_PlanesAndPosesAreThoseOfRender) {

@@ -5,8 +5,10 @@
 #include <tessera/image.h>
 
 #include <simdjson.h>
+#include <sys/stat.h>
 
 #include <cstring>
+#include <regex>
 #include <span>
 
 namespace {
@@ -183,6 +185,70 @@ TEST_F(CliComparison, BEY1_ThePageStandsAloneAndTheWorstComeFirst) {
         if ((have += 6) >= 8) decoded += static_cast<char>(bits >> (have -= 8) & 255);
     }
     EXPECT_TRUE(decoded == file);
+}
+
+TEST_F(CliComparison, BEY1_ThePageSaysWhatIsNotInIt) {
+    const Strings webp{"-o", in_folder("w/{model}.webp"), "--reference", in_folder("wref")};
+    ASSERT_EQ(batch({"-o", in_folder("wref/{model}.webp")}).code, 0);
+    fs::remove(folder_ / "wref/spheres.webp");
+    fs::create_directories(folder_ / "wref/spheres.webp");
+    std::ofstream(folder_ / "bad.gltf") << "{}";
+    EXPECT_EQ(batch(webp + Strings{in_folder("bad.gltf")}).code, 4);
+    const std::string html = read_file(in_folder("w/comparison.html"));
+    EXPECT_EQ(count(html, "src=\"data:image/webp;base64,"), 4) << "three equal ones, and the new one of the fourth";
+    EXPECT_NE(html.find("1 of 4 pictures differ, 1 scene failed</h1>"), std::string::npos);
+    EXPECT_NE(html.find("<p>1 file could not be read"), std::string::npos);
+}
+
+TEST_F(CliComparison, BEY1_PicturesOfOldDifferencesAreRemoved) {
+    change("hierarchy.png", 5, 9);
+    ASSERT_EQ(compare().code, 3);
+    const fs::path difference = folder_ / "out/differences/hierarchy.png.difference.png";
+    ASSERT_TRUE(fs::exists(difference));
+    EXPECT_EQ(compare({"--tolerance", "9"}).code, 0);
+    EXPECT_FALSE(fs::exists(difference));
+    ASSERT_EQ(compare().code, 3);
+    fs::remove(folder_ / "ref/hierarchy.png");
+    EXPECT_EQ(compare().code, 3);
+    EXPECT_FALSE(fs::exists(difference)) << "of a reference that is gone";
+}
+
+TEST_F(CliComparison, BEY1_AReferenceInThePlaceOfTheOutputIsRefused) {
+    const std::string before = read_file(in_folder("ref/spheres.png"));
+    fs::create_directory_symlink(folder_ / "ref", folder_ / "link");
+    for (const char* same : {"ref", "ref/", "ref/.", "link"}) {
+        const Outcome run =
+            batch({"-o", in_folder("ref/{model}.png"), "--reference", in_folder(same), "--ambient", "1"});
+        EXPECT_EQ(run.code, 2) << same;
+        EXPECT_NE(run.err.find("--reference"), std::string::npos) << run.err;
+    }
+    EXPECT_TRUE(read_file(in_folder("ref/spheres.png")) == before);
+}
+
+TEST_F(CliComparison, BEY1_APipeInThePlaceOfAReferenceIsNotWaitedFor) {
+    fs::remove(folder_ / "ref/spheres.png");
+    ASSERT_EQ(::mkfifo(in_folder("ref/spheres.png").c_str(), 0600), 0);
+    const Outcome run = compare();
+    EXPECT_EQ(run.signal, 0);
+    EXPECT_EQ(run.code, 3) << run.err;
+    EXPECT_EQ(std::string_view(picture(3)["comparison"]["verdict"]), "unreadable");
+}
+
+TEST_F(CliComparison, BEY1_InfiniteErrorsSurviveMerging) {
+    change("hierarchy.png", 5, 9);
+    ASSERT_EQ(compare().code, 3);
+    std::string report = read_file(in_folder("run.json"));
+    const std::regex error("\"(max|mean)_error\": *[0-9.eE+-]+");
+    ASSERT_TRUE(std::regex_search(report, error));
+    report = std::regex_replace(report, error, "\"$1_error\": null");
+    std::ofstream(folder_ / "run.json") << report;
+    const Outcome merged =
+        run_command({"merge-report", "-q", in_folder("run.json"), "-o", in_folder("new/folder/merged.json")});
+    EXPECT_EQ(merged.code, 3) << merged.err;
+    report_ = parser_.load(in_folder("new/folder/merged.json"));
+    const auto comparison = report_["scenes"].at(1)["pictures"].at(0)["comparison"];
+    EXPECT_TRUE(comparison["max_error"].is_null());
+    EXPECT_TRUE(comparison["mean_error"].is_null());
 }
 
 TEST_F(CliComparison, BEY1_NamesCannotBreakThePage) {

@@ -25,7 +25,9 @@ class CliVideo : public CliTest {
     // Puts a script in the place of ffmpeg; `$file` is what it is to write.
     Strings with_ffmpeg(const std::string& body) const {
         fs::create_directories(folder_ / "bin");
-        std::ofstream(folder_ / "bin/ffmpeg") << "#!/bin/bash\nfile=\"${@: -1}\"\n" << body << "\n";
+        std::ofstream(folder_ / "bin/ffmpeg") << "#!/bin/bash\nfile=\"${@: -1}\"\n[[ $file == file:* ]] || exit 9\n"
+                                              << "file=\"${file#file:}\"\n"
+                                              << body << "\n";
         fs::permissions(folder_ / "bin/ffmpeg", fs::perms::owner_all);
         const char* path = std::getenv("PATH");
         return {"PATH=" + in_folder("bin") + ":" + (path != nullptr ? path : "")};
@@ -56,6 +58,29 @@ TEST_F(CliVideo, ANI11_TheEncoderGetsTheFramesAsTheyAre) {
     for (const char* said :
          {"-f\nrawvideo\n", "-pixel_format\nrgba\n", "-video_size\n64x48\n", "-framerate\n24\n", "-i\npipe:0\n"})
         EXPECT_NE(arguments.find(said), std::string::npos) << said << "in\n" << arguments;
+    EXPECT_NE(arguments.find("-f\nmp4\nfile:" + in_folder("clip.mp4.tessera-")), std::string::npos) << arguments;
+}
+
+TEST_F(CliVideo, ANI11_NamesThatLookLikeAddressesOrOptionsAreFiles) {
+    Strings environment = with_ffmpeg("cat >\"./$file\"");
+    const Strings names{"-y.mp4", "a:b.mp4", "http:x.mp4", "pipe:1.mp4"};
+    // With the real one, too, where there is one.
+    for (const bool real : {false, true}) {
+        if (real && !has_ffmpeg()) continue;
+        if (real) environment.clear();
+        for (const std::string& name : names) {
+            Strings arguments = turn("");
+            arguments.erase(arguments.end() - 2, arguments.end());
+            const Outcome run =
+                run_program("/bin/bash",
+                            Strings{"-c", "cd " + folder_.string() + " && exec \"$0\" \"$@\"", kCommand} + arguments +
+                                Strings{"--output=" + name},
+                            {}, environment);
+            EXPECT_EQ(run.code, 0) << name << ": " << run.err;
+        }
+        EXPECT_EQ(outputs(), names);
+        for (const std::string& name : names) fs::remove(folder_ / name);
+    }
 }
 
 TEST_F(CliVideo, ANI11_NamesGoToTheEncoderWithoutAShell) {
