@@ -42,9 +42,11 @@ PlacedCamera camera_around(const Extent& e, const glm::dmat4& axes, double yfov,
     if (!e.empty) {
         eye = {0.5 * (e.right - e.left), 0.5 * (e.top - e.bottom),
                std::max((e.right + e.left) / (2 * t.x), (e.top + e.bottom) / (2 * t.y))};
-        // A single point (or a line of sight) has no extent: stand back by its own scale.
-        const double size = std::max({std::abs(eye.x), std::abs(eye.y), std::abs(e.nearest), 1e-3});
-        if (!(eye.z - e.nearest > 1e-6 * size)) eye.z = e.nearest + 2 * size;
+        // A single point (or a line of sight) has no extent but what rounding makes of it: stand back by its own
+        // scale. Very small scenes, and small ones far away, do have one.
+        constexpr double kRounding = 1e-12, kAtTheOrigin = 1e-3;
+        const double size = std::max({std::abs(eye.x), std::abs(eye.y), std::abs(e.nearest)});
+        if (!(eye.z - e.nearest > kRounding * size)) eye.z = e.nearest + 2 * (size > 0 ? size : kAtTheOrigin);
         near = 0.5 * (eye.z - e.nearest);
     }
     PlacedCamera camera;

@@ -68,6 +68,40 @@ TEST(Turntable, ANI11_NothingIsCutOffAndTheFramingIsTight) {
         }
 }
 
+// What is very small, or small and very far away, is framed as everything else is.
+TEST(Framing, TinyAndFarScenesFillThePicture) {
+    struct Case {
+        float size;
+        Vec3 offset;
+    };
+    for (const Case& c : {Case{1e-10f, {}}, Case{1e-12f, {}}, Case{1e-10f, {1e-4f, 0, 0}}, Case{3, {1e7f, 0, 0}},
+                          Case{3, {0, -1e7f, 1e7f}}, Case{1e12f, {}}}) {
+        const Scene scene = scattered(5, {c.size, c.size, c.size}, c.offset);
+        PreparedScene prepared(scene);
+        View still;
+        still.frame_bounds = true;
+        EXPECT_NEAR(reach(scene, prepared.camera(still, 1.5), 1.5), 1 / kMargin, 1e-5) << c.size << " " << c.offset.x;
+        double most = 0;
+        for (int i = 0; i < 90; ++i)
+            most = std::max(most, reach(scene, prepared.camera(at(2 * std::numbers::pi * i / 90), 1.5), 1.5));
+        EXPECT_LT(most, 1 / kMargin + 1e-5) << c.size << " " << c.offset.x;
+        EXPECT_GT(most, 0.98 / kMargin) << c.size << " " << c.offset.x;
+    }
+}
+
+// One point has no extent, wherever it is.
+TEST(Framing, APointIsSeenFromAfar) {
+    for (const Vec3 where : {Vec3{}, Vec3{1e-10f, 0, 0}, Vec3{5, 6, 7}, Vec3{1e7f, -1e7f, 0}}) {
+        const Scene scene = scattered(5, {}, where);
+        PreparedScene prepared(scene);
+        View still;
+        still.frame_bounds = true;
+        const PlacedCamera camera = prepared.camera(still, 1.5);
+        EXPECT_GT(camera.lens.znear, 0) << where.x;
+        EXPECT_LT(reach(scene, camera, 1.5), 1e-6) << where.x;
+    }
+}
+
 TEST(Turntable, ANI11_TheCameraGoesAroundTheAxis) {
     for (const Vec3 up : {Vec3{0, 1, 0}, Vec3{0, 0, 2}, Vec3{1, 2, -1}}) {
         const Scene scene = scattered(7, {1, 2, 3}, {5, 5, 5});
