@@ -2,6 +2,7 @@
 #include "load/gltf.h"
 
 #include "load/gltf_parts.h"
+#include "load/texcoord_check.h"
 #include "scene/check.h"
 
 namespace tessera {
@@ -41,6 +42,7 @@ Scene read_gltf(LoadContext& context, std::string_view json, std::optional<std::
         check_meshes(scene, false);
         check_animations(scene, false);
     });
+    warn_of_missing_texcoords(context, scene);
     read_pictures(document, scene);
 
     scene.extensions_ignored = document.ignored_extensions();

@@ -2,6 +2,8 @@
 #include "load/gltf_accessor.h"
 #include "load/gltf_parts.h"
 
+#include <algorithm>
+
 namespace tessera {
 namespace {
 
@@ -129,6 +131,12 @@ void read_nodes(GltfDocument& document, Scene& scene, const std::vector<int>& li
     scene.skins.resize(document.size(GltfArray::kSkins));  // read_skins() fills them
     document.each(GltfArray::kNodes,
                   [&](const Json& json, std::size_t i) { scene.nodes[i] = read_node(document, json, lights); });
+    const auto skinned = std::find_if(scene.nodes.begin(), scene.nodes.end(), [](const Node& node) {
+        return node.skin != kNone && node.mesh != kNone && !node.instances.empty();
+    });
+    if (skinned != scene.nodes.end())
+        document.context().warn("/nodes/" + std::to_string(skinned - scene.nodes.begin()) +
+                                ": EXT_mesh_gpu_instancing of a skinned mesh has no effect");
     document.each(GltfArray::kScenes, [&](const Json& json, std::size_t i) {
         document.note_extensions(json);
         scene.scenes[i].name = json.string_or("name");

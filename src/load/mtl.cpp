@@ -29,13 +29,12 @@ class MtlReader {
                 text_.rest();  // a backslash at the end of a comment joins nothing
                 continue;
             }
-            if (keyword == "newmtl") {
+            if (keyword == "newmtl")
                 begin();
-            } else if (materials_.empty()) {
+            else if (materials_.empty())
                 warn_once("statements before the first newmtl");
-            } else if (!factor(keyword, materials_.back()) && !map(keyword, materials_.back())) {
-                warn_once("the statement " + quoted(keyword) + " is not read");
-            }
+            else
+                statement(keyword, materials_.back());
         }
         return std::move(materials_);
     }
@@ -45,6 +44,16 @@ class MtlReader {
         context_.charge(sizeof(MtlMaterial) + 1024);
         materials_.emplace_back();
         materials_.back().name = text_.rest().substr(0, 400);
+    }
+
+    // One that is damaged is left out, and the others stay.
+    void statement(const std::string& keyword, MtlMaterial& m) {
+        try {
+            if (!factor(keyword, m) && !map(keyword, m)) warn_once("the statement " + quoted(keyword) + " is not read");
+        } catch (const Error& error) {
+            if (error.code() != ErrorCode::kInput) throw;
+            context_.warn(error.location() + ": " + error.message() + "; the statement is left out");
+        }
     }
 
     bool factor(const std::string& keyword, MtlMaterial& m) {
@@ -70,8 +79,10 @@ class MtlReader {
                 text_.word();
                 warn_once("halos are not drawn: d -halo is read as d");
             }
-            m.has_opacity = true;
-            return number([&](float v) { m.opacity = std::clamp(v, 0.0f, 1.0f); });
+            return number([&](float v) {
+                m.has_opacity = true;
+                m.opacity = std::clamp(v, 0.0f, 1.0f);
+            });
         }
         return keyword == "sharpness";  // of reflections, for engines that blur them
     }

@@ -35,7 +35,8 @@ struct MtlMaterial {
         map_roughness, map_metallic, map_other;
 };
 
-// `file` names the text in errors and warnings. Throws kInput for numbers that are none.
+// `file` names the text in errors and warnings. Statements with numbers that are none are left out, with a warning
+// each.
 std::vector<MtlMaterial> read_mtl_text(LoadContext& context, std::string_view text, const std::string& file);
 
 }  // namespace tessera

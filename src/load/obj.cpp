@@ -4,6 +4,7 @@
 #include "load/obj_materials.h"
 #include "load/obj_text.h"
 #include "load/polygon.h"
+#include "load/texcoord_check.h"
 #include "scene/vertex_normals.h"
 
 #include <algorithm>
@@ -255,6 +256,7 @@ Scene read_obj(LoadContext& context, std::string_view text, const SceneFiles& fi
         if (used[i]) numbers[i] = i == 0 ? materials.plain() : materials.find(parsed.materials[i - 1]);
     materials.finish();
     ObjBuilder(context, std::move(parsed), scene, numbers).build();
+    warn_of_missing_texcoords(context, scene);
     finish_scene(context, scene);
     return scene;
 }

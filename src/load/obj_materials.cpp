@@ -11,6 +11,10 @@ namespace {
 
 bool is_black(const Vec3& c) { return c.x == 0 && c.y == 0 && c.z == 0; }
 
+bool lie_alike(const MtlTexture& a, const MtlTexture& b) {
+    return a.scale == b.scale && a.offset == b.offset && a.clamp == b.clamp;
+}
+
 // A channel of a pixel, 0 .. 65535.
 std::uint32_t channel_of(const Image& image, std::size_t pixel, char channel) {
     std::uint32_t c[4];
@@ -109,7 +113,10 @@ int ObjMaterials::add_material(const MtlMaterial& m) {
                                            : ShadingModel::kBlinnPhong;
     material.texture(TextureSlot::kBaseColor) = texture(m.map_diffuse);
     material.texture(TextureSlot::kEmissive) = texture(m.map_emission);
-    if (!m.map_emission.file.empty() && is_black(m.emission)) material.emissive = {1, 1, 1};
+    if (const int picture = this->picture(m.map_emission); picture != kNone && is_black(m.emission)) {
+        material.emissive = {1, 1, 1};
+        without_picture_.push_back({picture, number, [](Material& dark) { dark.emissive = {}; }});
+    }
     material.texture(TextureSlot::kNormal) = texture(m.map_normal);
     material.normal_scale = m.map_normal.bump;
     set_opacity(m, number);
@@ -129,6 +136,8 @@ void ObjMaterials::set_opacity(const MtlMaterial& m, int number) {
     const char channel = m.map_opacity.channel != 0 ? m.map_opacity.channel : '?';
     const int color = picture(m.map_diffuse);
     const int both = combined(color, opacity, channel, 3);
+    if (color != kNone && !lie_alike(m.map_opacity, m.map_diffuse))
+        warn_once("the options -s, -o and -clamp of map_d are not those of map_Kd, which count for both");
     material.texture(TextureSlot::kBaseColor) = texture_of(both, color == kNone ? m.map_opacity : m.map_diffuse);
     masked_.push_back(number);
 }
@@ -142,6 +151,12 @@ void ObjMaterials::set_physical(const MtlMaterial& m, int number) {
     material.model = ShadingModel::kMetallicRoughness;
     material.roughness = m.roughness.value_or(roughness == kNone ? 0.5f : 1.0f);
     material.metallic = m.metallic.value_or(metallic == kNone ? 0.0f : 1.0f);
+    if (!m.roughness && roughness != kNone)
+        without_picture_.push_back({roughness, number, [](Material& plain) { plain.roughness = 0.5f; }});
+    if (!m.metallic && metallic != kNone)
+        without_picture_.push_back({metallic, number, [](Material& plain) { plain.metallic = 0; }});
+    if (roughness != kNone && metallic != kNone && !lie_alike(m.map_roughness, m.map_metallic))
+        warn_once("the options -s, -o and -clamp of map_Pm are not those of map_Pr, which count for both");
     int packed = kNone;
     const auto channel = [](const MtlTexture& t) { return t.channel != 0 ? t.channel : 'l'; };
     if (roughness != kNone) packed = combined(packed, roughness, channel(m.map_roughness), 1);
@@ -298,6 +313,10 @@ AlphaMode ObjMaterials::alpha_mode_of(int picture) {
 
 void ObjMaterials::finish() {
     decode_pictures(context_, std::move(picture_files_), scene_, PictureFaults::kWarn);
+    if (context_.options().load_pictures)
+        for (const WithoutPicture& w : without_picture_)
+            if (!scene_.pictures[static_cast<std::size_t>(w.picture)].pixels)
+                w.change(scene_.materials[static_cast<std::size_t>(w.material)]);
     for (const Part& part : parts_) combine(part);
     for (const int number : masked_) choose_alpha_mode(scene_.materials[static_cast<std::size_t>(number)]);
     // What was only part of others is let go.

@@ -40,6 +40,12 @@ class ObjMaterials {
         int into;        // picture, made of it
     };
 
+    // What becomes of a factor that is 1 for the sake of a picture, where that cannot be decoded.
+    struct WithoutPicture {
+        int picture, material;
+        void (*change)(Material& material);
+    };
+
     bool read_library(const std::string& name, bool must_be_there);
     int add_material(const MtlMaterial& m);
     void set_opacity(const MtlMaterial& m, int number);
@@ -64,6 +70,7 @@ class ObjMaterials {
     std::map<std::pair<int, bool>, int> textures_;  // by picture and clamping
     std::vector<PictureFile> picture_files_;
     std::vector<Part> parts_;
+    std::vector<WithoutPicture> without_picture_;
     std::map<int, AlphaMode> alpha_modes_;  // of pictures
     std::vector<int> masked_;               // materials whose alpha decides how they are drawn
     std::set<std::string> warned_;

@@ -48,6 +48,14 @@ TEST(Instancing, InstancesStayInstances) {
     EXPECT_NE(load_error(instanced(4, 3)).find("SCALE has 3 elements, others have 4"), std::string::npos);
 }
 
+TEST(Instancing, ASkinnedMeshIsNamed) {
+    std::string text = instanced(4, 4);
+    EXPECT_FALSE(warned(load_text(text), "skinned"));
+    text.insert(text.find("\"mesh\":0,"), "\"skin\":0,");
+    text.insert(text.find("\"scenes\""), "\"skins\":[{\"joints\":[0]}],");
+    EXPECT_TRUE(warned(load_text(text), "/nodes/0: EXT_mesh_gpu_instancing of a skinned mesh has no effect"));
+}
+
 TEST(Instancing, ALightStaysAtItsNode) {
     Scene scene = load_text(instanced(4, 4));
     scene.lights.emplace_back();

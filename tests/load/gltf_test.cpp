@@ -4,6 +4,7 @@
 
 #include "test_files.h"
 
+#include <algorithm>
 #include <cmath>
 #include <iterator>
 
@@ -135,6 +136,30 @@ TEST(Materials, Phong) {
     EXPECT_EQ(scene.materials[2].model, ShadingModel::kPhong);
     EXPECT_NE(load_error(gltf_text(R"("materials":[{"extensions":{"TESSERA_materials_phong":{"model":"toon"}}}])")),
               "");
+}
+
+TEST(Materials, ATextureWithoutCoordinatesIsNamedOnce) {
+    const auto load_with = [](const std::string& attributes, const std::string& set) {
+        return load_text(
+            gltf_text(
+                R"("images":[{"uri":"data:,"}],"textures":[{"source":0}],"materials":[{"name":"wood","emissiveTexture":{)"
+                R"("index":0,"texCoord":)" +
+                    set +
+                    R"(}}],"bufferViews":[{"buffer":0,"byteLength":36}],"accessors":[)"
+                    R"({"bufferView":0,"componentType":5126,"type":"VEC3","count":3},)"
+                    R"({"bufferView":0,"componentType":5126,"type":"VEC2","count":3}],"meshes":[{"primitives":[)"
+                    R"({"material":0,"attributes":{"POSITION":0)" +
+                    attributes + R"(}},{"material":0,"attributes":{"POSITION":0)" + attributes + "}}]}]",
+                std::vector<std::uint8_t>(36)),
+            {.load_pictures = false});
+    };
+    const std::string reason = "material 0 \"wood\" has a texture over the texture coordinates 1";
+    const Scene scene = load_with(R"(,"TEXCOORD_0":1)", "1");
+    EXPECT_EQ(std::count_if(scene.warnings.begin(), scene.warnings.end(),
+                            [&](const std::string& w) { return w.find(reason) != std::string::npos; }),
+              1);
+    EXPECT_TRUE(warned(load_with("", "0"), "the texture coordinates 0"));
+    EXPECT_FALSE(warned(load_with(R"(,"TEXCOORD_0":1)", "0"), "texture coordinates"));
 }
 
 // The example of docs/scene-format.md is a file that loads.

@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <fstream>
 
 namespace tessera {
@@ -64,14 +65,21 @@ TEST(Mtl, TextureOptionsComeBeforeNamesWithBlanks) {
     EXPECT_EQ(m[0].map_normal.bump, 2.0f);
 }
 
-TEST(Mtl, NumbersThatAreNoneAreNamed) {
-    try {
-        parse("newmtl a\nKd red\n");
-        FAIL();
-    } catch (const Error& error) {
-        EXPECT_NE(std::string(error.what()).find("x.mtl, line 2: \"red\" is no number"), std::string::npos)
-            << error.what();
-    }
+TEST(Mtl, AStatementWithABadNumberIsLeftOutAndNamed) {
+    LoadContext context("x.obj", {});
+    const auto m = read_mtl_text(
+        context, "newmtl a\nKd red\nNs nan\nd x\nTr 0.25\nmap_Kd -s x y a.png\nKs 1 1 1\nnewmtl b\nKd 0 0 1\n",
+        "x.mtl");
+    ASSERT_EQ(m.size(), 2u);
+    EXPECT_EQ(m[0].diffuse, MtlMaterial().diffuse);
+    EXPECT_EQ(m[0].shininess, MtlMaterial().shininess);
+    EXPECT_EQ(m[0].opacity, 0.75f);
+    EXPECT_EQ(m[0].map_diffuse.file, "");
+    EXPECT_EQ(m[0].specular, (Vec3{1, 1, 1}));
+    EXPECT_EQ(m[1].diffuse, (Vec3{0, 0, 1}));
+    ASSERT_EQ(context.warnings().size(), 4u);
+    EXPECT_EQ(context.warnings()[0], "x.mtl, line 2: \"red\" is no number; the statement is left out");
+    EXPECT_EQ(context.warnings()[1], "x.mtl, line 3: \"nan\" is no number; the statement is left out");
 }
 
 class MtlFiles : public testing::Test {
@@ -195,6 +203,44 @@ TEST_F(MtlFiles, GlassIsTransmission) {
     }
     EXPECT_EQ(material(load("newmtl m\nillum 7\n")).transmission.strength, 1);
     EXPECT_EQ(material(load("newmtl m\nTf 0 0 0\nillum 7\nNi 0.5\n")).transmission.strength, 0);
+}
+
+// A factor is 1 for the sake of a map only where the map is there.
+TEST_F(MtlFiles, MapsThatAreMissingOrDamagedChangeNoFactor) {
+    write("good.png", image(1, 1, {9, 9, 9, 255}));
+    write("damaged.png", "no picture");
+    for (const char* name : {"gone.png", "damaged.png"}) {
+        const Scene scene = load(std::string("newmtl m\nPr 0.25\nmap_Ke ") + name + "\nmap_Pm " + name + "\n");
+        EXPECT_EQ(material(scene).emissive, (Vec3{0, 0, 0})) << name;
+        EXPECT_EQ(material(scene).metallic, 0) << name;
+        EXPECT_EQ(material(scene).roughness, 0.25f) << name;
+        EXPECT_EQ(material(load(std::string("newmtl m\nPm 0.25\nmap_Pr ") + name)).roughness, 0.5f) << name;
+        EXPECT_EQ(material(load(std::string("newmtl m\nKe 1 2 3\nmap_Ke ") + name)).emissive, (Vec3{1, 2, 3}));
+    }
+    const Scene good = load("newmtl m\nmap_Ke good.png\nmap_Pm good.png\nmap_Pr good.png\n");
+    EXPECT_EQ(material(good).emissive, (Vec3{1, 1, 1}));
+    EXPECT_EQ(material(good).metallic, 1);
+    EXPECT_EQ(material(good).roughness, 1);
+}
+
+TEST_F(MtlFiles, MapsThatShareATextureShareItsOptions) {
+    write("c.png", image(1, 1, {9, 9, 9, 255}));
+    const auto count = [](const Scene& scene) {
+        return std::count_if(scene.warnings.begin(), scene.warnings.end(),
+                             [](const std::string& w) { return w.find("map_d are not those") != std::string::npos; });
+    };
+    EXPECT_EQ(count(load("newmtl m\nmap_Kd -s 2 2 c.png\nmap_d c.png\nnewmtl n\nmap_Kd -o 1 c.png\nmap_d c.png\n")), 1);
+    EXPECT_EQ(count(load("newmtl m\nmap_Kd -s 2 2 c.png\nmap_d -s 2 2 c.png\n")), 0);
+    EXPECT_EQ(count(load("newmtl m\nmap_d -s 2 2 c.png\n")), 0);
+}
+
+TEST_F(MtlFiles, ATextureWithoutCoordinatesIsNamedOnce) {
+    write("c.png", image(1, 1, {9, 9, 9, 255}));
+    write("m.mtl", "newmtl m\nmap_Kd c.png\n");
+    const std::string shape = "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl m\n";
+    const Scene scene = load_text(shape + "o a\nf 1 2 3\no b\nf 1 3 2\n", "x.obj", {}, folder.path().string());
+    ASSERT_EQ(scene.warnings.size(), 1u);
+    EXPECT_NE(scene.warnings[0].find("\"m\" has a texture over the texture coordinates 0"), std::string::npos);
 }
 
 TEST_F(MtlFiles, LibrariesMayHaveBlanksOrBeSeveral) {
