@@ -7,6 +7,7 @@
 #include "load/ply_mesh.h"
 #include "load/text.h"
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
@@ -107,8 +108,8 @@ int find_one(const PlyElement& element, std::initializer_list<const char*> names
     return -1;
 }
 
-// A property's place among the floats of the mesh: value i goes to first[stride * i]. 8- and 16-bit
-// integers of colours become 0 .. 1.
+// A property's place among the floats of the mesh: value i goes to first[stride * i]. Integers of colours become
+// 0 .. 1: of 16 bits they count to 65535, else to 255.
 struct Column {
     float* first = nullptr;
     std::size_t stride = 0;
@@ -170,7 +171,7 @@ class PlyReader {
             const PlyType type = element.properties[static_cast<std::size_t>(p)].type;
             Column& column = columns[static_cast<std::size_t>(p)];
             column = {reinterpret_cast<float*>(values.data()) + component++, sizeof(T) / sizeof(float), 1};
-            if (are_colors && is_integer(type)) column.scale = 1.0 / (size_of(type) == 1 ? 255 : 65535);
+            if (are_colors && is_integer(type)) column.scale = 1.0 / (size_of(type) == 2 ? 65535 : 255);
         }
     }
 
@@ -204,10 +205,26 @@ class PlyReader {
                     column.first[column.stride * i] =
                         static_cast<float>(numbers.next(e.properties[p].type) * column.scale);
             }
+        check_colors();
         if (has_color && is_integer(e.properties[static_cast<std::size_t>(red)].type))
             for (Vec4& c : mesh_.colors)
                 for (float* v : {&c.x, &c.y, &c.z}) *v = static_cast<float>(linear_from_srgb(static_cast<double>(*v)));
         for (Vec2& uv : mesh_.texcoords) uv.y = 1 - uv.y;  // PLY counts from the bottom
+    }
+
+    // Writers of floats may mean 255 as white, and some fill alpha with zeros.
+    void check_colors() {
+        constexpr float kFarAboveWhite = 8;
+        float most = 0, most_alpha = 0;
+        for (const Vec4& c : mesh_.colors) {
+            most = std::max({most, c.x, c.y, c.z});
+            most_alpha = std::max(most_alpha, c.w);
+        }
+        if (most > kFarAboveWhite)
+            context_.warn("the colours of the vertices are far above 1, which is white; 255 is where they are uchar");
+        if (mesh_.colors.empty() || most_alpha > 0) return;
+        context_.warn("every vertex has an alpha of 0; it is taken as 1");
+        for (Vec4& c : mesh_.colors) c.w = 1;
     }
 
     template <class Numbers>
@@ -348,7 +365,11 @@ void add_parts(LoadContext& context, Scene& scene, const SceneFiles& files, cons
                                                          header.texture_files[static_cast<std::size_t>(part.texture)],
                                                          pictures)
                                            : plain_material());
-        if (!p.colors.empty()) scene.materials.back().base_color = {1, 1, 1, 1};
+        if (!p.colors.empty()) {
+            scene.materials.back().base_color = {1, 1, 1, 1};
+            if (std::any_of(p.colors[0].begin(), p.colors[0].end(), [](const Vec4& c) { return c.w < 1; }))
+                scene.materials.back().alpha_mode = AlphaMode::kBlend;
+        }
         // Bare points and lines take the ink that is seen on any background.
         if (p.mode != PrimitiveMode::kTriangles && p.colors.empty() && p.normals.empty() && !textured)
             p.material = kNone;
@@ -377,6 +398,8 @@ Scene read_ply(LoadContext& context, std::span<const std::byte> file, const Scen
     if (triangles.vertices.empty()) {
         parts = lines_or_points(context, std::move(mesh));
     } else {
+        if (!mesh.edges.empty())
+            context.warn("the " + std::to_string(mesh.edges.size() / 2) + " edges beside the faces are not drawn");
         if (mesh.normals.empty())
             make_normals(context, mesh, triangles);
         else

@@ -140,6 +140,52 @@ TEST(Ply, PointsEdgesAndStrips) {
     EXPECT_EQ(p.normals[p.indices[0]], p.normals[p.indices[3]]);
 }
 
+const std::string kThreeVertices =
+    "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n";
+
+Scene colored(const std::string& type, const char* first, const char* second) {
+    std::string file = kThreeVertices;
+    for (const char* channel : {"red", "green", "blue", "alpha"})
+        file.append("property ").append(type).append(" ").append(channel).append("\n");
+    file.append("element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0 ").append(first);
+    file.append("\n1 0 0 ").append(second).append("\n0 1 0 ").append(second).append("\n3 0 1 2\n");
+    return load_text(file, "c.ply");
+}
+
+TEST(Ply, IntegersOfColoursCountTo255But16BitsTo65535) {
+    for (const char* type : {"uchar", "int", "uint"}) {
+        const Scene scene = colored(type, "255 0 255 255", "0 255 0 255");
+        EXPECT_EQ(only_primitive(scene).colors.at(0)[0], (Vec4{1, 0, 1, 1})) << type;
+        EXPECT_TRUE(scene.warnings.empty()) << type;
+        EXPECT_EQ(scene.materials.at(0).alpha_mode, AlphaMode::kOpaque);
+    }
+    EXPECT_EQ(only_primitive(colored("ushort", "65535 0 65535 65535", "0 0 0 65535")).colors.at(0)[0],
+              (Vec4{1, 0, 1, 1}));
+    const Scene far = colored("float", "255 0 255 1", "0 0 0 1");
+    ASSERT_EQ(far.warnings.size(), 1u);
+    EXPECT_NE(far.warnings[0].find("far above 1"), std::string::npos);
+    EXPECT_TRUE(colored("float", "2 0 1 1", "0 0 0 1").warnings.empty());
+}
+
+TEST(Ply, AlphaOfVerticesBlends) {
+    EXPECT_EQ(colored("uchar", "255 0 255 128", "0 0 0 255").materials.at(0).alpha_mode, AlphaMode::kBlend);
+    const Scene zeros = colored("uchar", "255 0 255 0", "0 0 0 0");
+    EXPECT_EQ(zeros.materials.at(0).alpha_mode, AlphaMode::kOpaque);
+    EXPECT_EQ(only_primitive(zeros).colors.at(0)[0].w, 1);
+    EXPECT_EQ(zeros.warnings.size(), 1u);
+}
+
+TEST(Ply, EdgesBesideFacesAreNamed) {
+    const Scene scene = load_text(kThreeVertices +
+                                      "element face 1\nproperty list uchar int vertex_indices\nelement edge 1\n"
+                                      "property int vertex1\nproperty int vertex2\nend_header\n"
+                                      "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n0 1\n",
+                                  "e.ply");
+    EXPECT_EQ(only_primitive(scene).mode, PrimitiveMode::kTriangles);
+    ASSERT_EQ(scene.warnings.size(), 1u);
+    EXPECT_NE(scene.warnings[0].find("the 1 edges beside the faces"), std::string::npos);
+}
+
 // Writers that care for normals only: the front is where they point.
 TEST(Ply, TrianglesTurnToTheirNormals) {
     const Scene scene = load_text(
