@@ -68,14 +68,26 @@ std::optional<std::string> real_path(const std::string& path) {
 }
 
 // The rules for paths below the scene's folder that need no file system. `shown` stands for it in errors.
-void check_path(const LoadContext& context, std::string_view path, const std::string& shown, const std::string& place) {
+void check_name(const LoadContext& context, std::string_view path, const std::string& shown, const std::string& place) {
     if (path.empty()) context.fail("the name of a file is empty", place);
     if (path.find('\0') != std::string::npos) context.fail("\"" + shown + "\": zero character in a path", place);
     if (path.find('\\') != std::string::npos) context.fail("\"" + shown + "\": backslash in a path", place);
     if (path.front() == '/') context.fail("\"" + shown + "\": absolute paths are not read", place);
     // Decoded, it could still be read as a scheme by somebody else; here a colon is only a character.
+}
+
+void check_path(const LoadContext& context, std::string_view path, const std::string& shown, const std::string& place) {
+    check_name(context, path, shown, place);
     for (const std::string& part : components_of(path))
         if (part == "..") context.fail("\"" + shown + "\": leaves the scene's folder", place);
+}
+
+// Strict base64 of what writers make of it in a URI: percent-encoded, in lines, without padding.
+std::string clean_base64(const LoadContext& context, std::string_view text, const std::string& place) {
+    std::string clean = percent_decode(context, text, place);
+    std::erase_if(clean, [](char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n'; });
+    if (clean.size() % 4 >= 2 && !clean.ends_with('=')) clean.append(4 - clean.size() % 4, '=');
+    return clean;
 }
 
 }  // namespace
@@ -103,9 +115,16 @@ std::string percent_decode(const LoadContext& context, std::string_view text, co
 Bytes decode_data_uri(LoadContext& context, std::string_view uri, const std::string& place) {
     const std::size_t comma = uri.find(',');
     if (comma == std::string_view::npos) context.fail("data URI without a comma", place);
-    const std::string_view header = uri.substr(5, comma - 5), text = uri.substr(comma + 1);
+    const std::string_view header = uri.substr(5, comma - 5);
+    std::string_view text = uri.substr(comma + 1);
     constexpr std::string_view kBase64 = ";base64";
     if (header.size() >= kBase64.size() && same_ignoring_case(header.substr(header.size() - kBase64.size()), kBase64)) {
+        std::string cleaned;
+        if (text.find_first_of("% \t\r\n") != std::string_view::npos || text.size() % 4 != 0) {
+            context.charge(2 * text.size(), place);
+            cleaned = clean_base64(context, text, place);
+            text = cleaned;
+        }
         const std::optional<std::size_t> size = base64_size(text);
         if (!size) context.fail("base64 data has a wrong length", place);
         context.charge(*size, place);
@@ -124,14 +143,25 @@ std::string checked_path(const LoadContext& context, std::string_view uri, const
     const std::string shown(uri.substr(0, 200));
     if (has_scheme(uri)) context.fail("\"" + shown + "\": only relative and data: URIs are read", place);
     std::string path = percent_decode(context, uri, place);
-    check_path(context, path, shown, place);
+    check_name(context, path, shown, place);
     return path;
 }
 
-std::string normal_path(const LoadContext& context, const std::string& path, const std::string& place) {
-    check_path(context, path, path.substr(0, 200), place);
+std::string path_from(const LoadContext& context, const std::string& folder, const std::string& path,
+                      const std::string& place) {
+    const std::string shown = path.substr(0, 200);
+    check_name(context, path, shown, place);
+    std::vector<std::string> parts;
+    for (const std::string& part : components_of(folder + "/" + path)) {
+        if (part != "..") {
+            parts.push_back(part);
+            continue;
+        }
+        if (parts.empty()) context.fail("\"" + shown + "\": leaves the archive", place);
+        parts.pop_back();
+    }
     std::string joined;
-    for (const std::string& part : components_of(path)) joined += (joined.empty() ? "" : "/") + part;
+    for (const std::string& part : parts) joined.append(joined.empty() ? "" : "/").append(part);
     return joined;
 }
 

@@ -26,6 +26,38 @@ bool is_scene(std::string_view name) {
                        [&](std::string_view extension) { return lower.ends_with(extension); });
 }
 
+// As other names say it: with forward slashes, without "." and empty parts. Folders have none.
+std::string entry_name(std::string_view text) {
+    std::string name(text), normal;
+    std::replace(name.begin(), name.end(), '\\', '/');
+    if (name.ends_with('/')) return {};
+    for (std::size_t at = 0; at < name.size();) {
+        const std::size_t end = std::min(name.find('/', at), name.size());
+        const std::string part = name.substr(at, end - at);
+        if (!part.empty() && part != ".") normal.append(normal.empty() ? "" : "/").append(part);
+        at = end + 1;
+    }
+    return normal;
+}
+
+// APPNOTE.TXT of PKWARE, 4.4.5.
+std::string packing_name(unsigned long method) {
+    switch (method) {
+        case 9:
+            return "Deflate64";
+        case 12:
+            return "bzip2";
+        case 14:
+            return "LZMA";
+        case 93:
+            return "Zstandard";
+        case 95:
+            return "XZ";
+        default:
+            return "method " + std::to_string(method);
+    }
+}
+
 // What other systems put beside the files.
 bool is_hidden(std::string_view name) {
     return name.starts_with("__MACOSX/") || name.find("/.") != name.npos || name.starts_with('.');
@@ -102,7 +134,8 @@ void ZipFiles::find_scene(LoadContext& context) {
         unz_file_info64 info{};
         if (unzGetCurrentFileInfo64(archive_->zip, &info, text, sizeof text - 1, nullptr, 0, nullptr, 0) != UNZ_OK)
             return;
-        const std::string_view name(text);
+        const std::string name = entry_name(text);
+        if (name.empty()) continue;
         unz64_file_pos place{};
         unzGetFilePos64(archive_->zip, &place);
         context.charge(sizeof place + name.size() + 64);
@@ -115,7 +148,9 @@ void ZipFiles::find_scene(LoadContext& context) {
 
 Bytes ZipFiles::read_entry(LoadContext& context, const std::string& name, std::uint64_t most,
                            const std::string& place) const {
-    const auto fail = [&](const char* reason) { context.fail(quoted(name) + " of the archive " + reason, place); };
+    const auto fail = [&](const std::string& reason) {
+        context.fail(quoted(name) + " of the archive " + reason, place);
+    };
     unz_file_info64 info{};
     const auto found = archive_->places.find(name);
     if (found == archive_->places.end()) fail("is not there");
@@ -126,7 +161,10 @@ Bytes ZipFiles::read_entry(LoadContext& context, const std::string& name, std::u
     if (info.flag & 1) fail("is encrypted");
     const std::uint64_t size = std::min<std::uint64_t>(info.uncompressed_size, most);
     context.charge(size, place);
-    if (unzOpenCurrentFile(archive_->zip) != UNZ_OK) fail("is damaged, or packed in a way that is not read");
+    if (unzOpenCurrentFile(archive_->zip) != UNZ_OK) {
+        if (info.compression_method == 0 || info.compression_method == Z_DEFLATED) fail("is damaged");
+        fail("is packed with " + packing_name(info.compression_method) + "; only stored and deflated files are read");
+    }
     const auto close = [&] { return unzCloseCurrentFile(archive_->zip); };
     Bytes bytes(static_cast<std::size_t>(size));
     std::size_t done = 0;
@@ -149,7 +187,7 @@ Bytes ZipFiles::read_scene(LoadContext& context) const { return read_entry(conte
 
 Bytes ZipFiles::read(LoadContext& context, const std::string& path, std::uint64_t most,
                      const std::string& place) const {
-    return read_entry(context, folder_ + normal_path(context, path, place), most, place);
+    return read_entry(context, path_from(context, folder_, path, place), most, place);
 }
 
 }  // namespace tessera

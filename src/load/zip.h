@@ -15,7 +15,8 @@ namespace tessera {
 
 bool is_zip(std::span<const std::byte> file);
 
-// Paths are those inside the archive, relative to its scene's folder.
+// Paths are those inside the archive, relative to its scene's folder; ".." may not leave the archive. Names of the
+// archive may have backslashes or begin with "./".
 class ZipFiles : public SceneFiles {
   public:
     // `file` must outlive this. Throws kInput for what is no archive or holds no scene.

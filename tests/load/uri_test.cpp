@@ -143,6 +143,12 @@ TEST(DataUri, BothEncodings) {
     EXPECT_EQ(text("data:application/octet-stream;base64,Zm9v"), "foo");
     EXPECT_EQ(text("data:;BASE64,Zm9v"), "foo");
     EXPECT_EQ(text("data:text/plain,a%20b"), "a b");
+    // What writers make of base64.
+    for (const char* data : {"Zm9vYg", "Zm9vYg%3D%3D", "Zm9v\nYg==", " Zm9v\r\n\tYg", "Zm9%76Yg=="})
+        EXPECT_EQ(text(std::string("data:;base64,") + data), "foob") << data;
+    EXPECT_THROW(text("data:;base64,Zm9vY"), Error);
+    EXPECT_THROW(text("data:;base64,Zm9v%4"), Error);
+    EXPECT_THROW(text("data:;base64,Zm9vYg="), Error);
     EXPECT_EQ(text("data:,"), "");
     EXPECT_THROW(text("data:;base64,Zm9"), Error);
     EXPECT_THROW(text("data:;base64,Zm9!"), Error);

@@ -62,6 +62,32 @@ TEST(Zip, NamesFilesByTheirPlaceInTheArchive) {
     EXPECT_NE(error.find("thing.zip/s/bad.obj: line 2"), std::string::npos) << error;
 }
 
+// Names as archivers write them, and paths that lead through the folder above.
+TEST(Zip, NamesAreBroughtIntoOneForm) {
+    const std::string library = "newmtl red\nKd 1 0 0\n";
+    const std::string up = "mtllib ../materials/m.mtl\n" + kTriangle.substr(kTriangle.find('\n') + 1);
+    using Files = std::map<std::string, std::string>;
+    for (const Files& files : {Files{{"./s/a.obj", kTriangle}, {"./s/materials/m.mtl", library}},
+                               Files{{"s\\a.obj", kTriangle}, {"s\\materials\\m.mtl", library}},
+                               Files{{"s/a.obj", up}, {"materials/m.mtl", library}}}) {
+        const Scene scene = load_text(zip_of(files), "thing.zip");
+        EXPECT_TRUE(scene.warnings.empty()) << scene.warnings[0];
+        EXPECT_EQ(scene.materials.at(0).diffuse, (Vec3{1, 0, 0})) << files.begin()->first;
+    }
+    EXPECT_NE(load_error(zip_of({{"./s/bad.obj", "f 1 2 3\n"}}), "thing.zip").find("thing.zip/s/bad.obj: line 1"),
+              std::string::npos);
+}
+
+TEST(Zip, NamesThePackingThatIsNotRead) {
+    const std::string whole = zip_of({{"a.obj", kTriangle}});
+    for (const auto& [method, name] : {std::pair(12, "bzip2"), {14, "LZMA"}, {93, "Zstandard"}, {77, "method 77"}}) {
+        std::string zip = whole;  // the method stands in both headers of the file
+        zip[8] = zip[zip.find("PK\x01\x02") + 10] = static_cast<char>(method);
+        const std::string error = load_error(zip, "x.zip");
+        EXPECT_NE(error.find(std::string("is packed with ") + name), std::string::npos) << error;
+    }
+}
+
 TEST(Zip, HostileArchivesAreRefused) {
     const auto expect = [](const std::string& zip, const std::string& reason, const LoadOptions& options = {}) {
         const std::string error = load_error(zip, "x.zip", options);
@@ -72,10 +98,10 @@ TEST(Zip, HostileArchivesAreRefused) {
     expect(zip_of({{"a.obj", kTriangle}}, "secret"), "is encrypted");
     // Nothing outside is opened, whatever it is called.
     const std::string leaving =
-        "{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"byteLength\":1,\"uri\":\"../b.bin\"}],"
+        "{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"byteLength\":1,\"uri\":\"../../b.bin\"}],"
         "\"bufferViews\":[{\"buffer\":0,\"byteLength\":1}],\"accessors\":[{\"bufferView\":0,\"componentType\":5121,"
         "\"type\":\"SCALAR\",\"count\":1}],\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0}}]}]}";
-    expect(zip_of({{"a/s.gltf", leaving}, {"b.bin", "x"}}), "leaves the scene's folder");
+    expect(zip_of({{"a/s.gltf", leaving}, {"b.bin", "x"}}), "leaves the archive");
     // A bomb: the sizes count before anything is unpacked.
     LoadOptions small;
     small.max_bytes = 1 << 20;
