@@ -1,5 +1,6 @@
 // Choosing a codec: by content when reading, by extension when writing.
 #include "image/codecs.h"
+#include "image/foreign_formats.h"
 
 #include <tessera/error.h>
 #include <tessera/image_files.h>
@@ -37,7 +38,11 @@ constexpr Reading kReadings[] = {
 const Reading& reading_of(std::span<const std::byte> file) {
     for (const Reading& reading : kReadings)
         if (reading.is(file)) return reading;
-    throw Error(ErrorCode::kInput, "not a picture that can be read (PNG, JPEG, HDR, EXR, TIFF or WebP)");
+    constexpr const char* kRead = "PNG, JPEG, HDR, EXR, TIFF or WebP";
+    if (const std::string_view format = foreign_picture_format(file); !format.empty())
+        throw Error(ErrorCode::kInput,
+                    "a picture in " + std::string(format) + ", which is not read (" + kRead + " are)");
+    throw Error(ErrorCode::kInput, std::string("not a picture that can be read (") + kRead + ")");
 }
 
 std::vector<std::byte> read_file(const std::string& path) {

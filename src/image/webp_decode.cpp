@@ -5,6 +5,8 @@
 
 #include <webp/decode.h>
 
+#include <algorithm>
+
 namespace tessera {
 namespace {
 
@@ -15,6 +17,26 @@ namespace {
                                                                             : "damaged WebP");
 }
 
+// That the file has all of the picture's chunk, which its header promises: a few bytes must not ask for the memory of a
+// large picture. `in` stands behind "WEBP". Chunks are padded to even sizes.
+void check_chunks(ByteCursor in, std::uint64_t riff_bytes) {
+    const auto truncated = [] { return Error(ErrorCode::kInput, "damaged WebP: truncated"); };
+    if (riff_bytes < 4 || riff_bytes - 4 > in.rest()) throw truncated();
+    std::uint64_t rest = riff_bytes - 4;
+    while (rest >= 8) {
+        const bool is_picture = in.begins_with("VP8 ") || in.begins_with("VP8L");
+        in.skip(4);
+        const std::uint64_t bytes = in.u32();
+        rest -= 8;
+        if (bytes > rest) throw truncated();
+        if (is_picture) return;
+        const std::uint64_t padded = std::min(bytes + bytes % 2, rest);
+        in.skip(padded);
+        rest -= padded;
+    }
+    throw Error(ErrorCode::kInput, "damaged WebP: no picture in it");
+}
+
 }  // namespace
 
 bool is_webp(std::span<const std::byte> file) {
@@ -23,7 +45,10 @@ bool is_webp(std::span<const std::byte> file) {
 
 ImageInfo read_webp_info(std::span<const std::byte> file) {
     ByteCursor in(file, "WebP");
-    in.skip(12);
+    in.skip(4);
+    const std::uint32_t riff_bytes = in.u32();
+    in.skip(4);
+    const ByteCursor chunks = in;
     ImageInfo info;
     info.codec = "webp";
     info.channels = 3;
@@ -50,6 +75,7 @@ ImageInfo read_webp_info(std::span<const std::byte> file) {
     } else {
         throw Error(ErrorCode::kInput, "damaged WebP header");
     }
+    check_chunks(chunks, riff_bytes);
     return info;
 }
 

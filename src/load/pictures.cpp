@@ -1,6 +1,8 @@
 #include "load/pictures.h"
 
 #include "core/parallel.h"
+#include "image/codecs.h"
+#include "image/foreign_formats.h"
 
 #include <algorithm>
 #include <cstdint>
@@ -32,7 +34,18 @@ std::string_view foreign_format(std::span<const std::byte> bytes) {
     throw Error(error.code(), name + error.message(), context.file(), file.place);
 }
 
+// Of the formats that are read, those of floating-point values are no textures.
+void check_format(const PictureFile& file) {
+    for (const auto is : {is_png, is_jpeg, is_webp, is_tiff, is_hdr, is_exr})
+        if (is(file.bytes)) return;
+    const std::string_view format = foreign_picture_format(file.bytes);
+    throw Error(ErrorCode::kInput, format.empty() ? "not a picture that can be a texture (PNG, JPEG, WebP or TIFF)"
+                                                  : "pictures in " + std::string(format) +
+                                                        " are not read; textures are PNG, JPEG, WebP or TIFF");
+}
+
 void charge_pixels(LoadContext& context, const PictureFile& file) {
+    check_format(file);
     const ImageInfo info = read_image_info(file.bytes);
     const std::uint64_t pixels = static_cast<std::uint64_t>(info.width) * static_cast<std::uint64_t>(info.height);
     if (pixels > context.options().max_pixels)

@@ -52,6 +52,26 @@ TEST(Webp, RefusesByName) {
     EXPECT_NE(error_of([&] { decode_image(file); }).message().find("animated"), std::string::npos);
 }
 
+// A header of a large picture with nothing behind it is refused before there is memory for the picture.
+TEST(Webp, SizesOfChunksAreThoseOfTheFile) {
+    const auto message = [](std::vector<std::byte> file) {
+        return error_of([&] { (void)read_image_info(file); }).message();
+    };
+    const std::vector<std::byte> whole = encode_webp(test::sphere_picture(24, 16, true), {.lossless = false});
+    EXPECT_EQ(message({whole.begin(), whole.end() - 2}), "damaged WebP: truncated");
+    std::vector<std::byte> file = whole;
+    const std::size_t picture = test::find_text(file, "VP8 ");
+    ASSERT_NE(picture, std::string_view::npos);
+    test::put_little_endian(file, picture + 4, file.size() - picture - 8 + 2, 4);
+    EXPECT_EQ(message(file), "damaged WebP: truncated");
+    file.resize(picture);
+    test::put_little_endian(file, 4, file.size() - 8, 4);
+    EXPECT_EQ(message(file), "damaged WebP: no picture in it");
+    std::vector<std::byte> longer = whole;  // what stands behind the picture is nobody's business
+    longer.resize(longer.size() + 10);
+    EXPECT_TRUE(same_pixels(decode_image(longer), decode_image(whole)));
+}
+
 TEST(Webp, DamageIsSurvived) {
     test::expect_damage_is_survived(encode_webp(test::sphere_picture(24, 16, true)));
     test::expect_damage_is_survived(encode_webp(test::sphere_picture(24, 16, true), {.lossless = false}));

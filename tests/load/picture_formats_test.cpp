@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cstring>
 #include <fstream>
 
 namespace tessera {
@@ -95,6 +96,26 @@ TEST(PictureFormats, FloatingPointTexturesAreRefusedByName) {
     const std::string error = load_error(text);
     EXPECT_NE(error.find("/images/0"), std::string::npos);
     EXPECT_NE(error.find("floating-point values"), std::string::npos);
+}
+
+// Textures are named as what they are, and only formats that can be one are offered.
+TEST(PictureFormats, ForeignTexturesAreNamed) {
+    const std::string zeros(60, '\0');
+    const std::string tga = std::string("\0\0\2\0\0\0\0\0\0\0\0\0\4\0\4\0\x18\0", 18) + zeros;
+    for (const auto& [content, reason] : {std::pair("BM" + zeros, "pictures in BMP are not read"),
+                                          {"GIF89a" + zeros, "pictures in GIF are not read"},
+                                          {tga, "pictures in TGA are not read"},
+                                          {"8BPS" + zeros, "pictures in PSD are not read"},
+                                          {"what" + zeros, "not a picture that can be a texture"}}) {
+        std::vector<std::byte> file(content.size());
+        std::memcpy(file.data(), content.data(), content.size());
+        const std::string error =
+            load_error(gltf_text("\"images\":[{\"uri\":\"" + data_uri("x", file) +
+                                 "\"}],\"textures\":[{\"source\":0}],"
+                                 "\"materials\":[{\"pbrMetallicRoughness\":{\"baseColorTexture\":{\"index\":0}}}]"));
+        EXPECT_NE(error.find(reason), std::string::npos) << error;
+        EXPECT_EQ(error.find("EXR"), std::string::npos) << error;
+    }
 }
 
 void write(const fs::path& path, const std::vector<std::byte>& file) {
