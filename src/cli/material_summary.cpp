@@ -64,6 +64,39 @@ class Part {
     JsonWriter& json_;
 };
 
+// What the model has beside its base colour.
+void write_reflection(JsonWriter& json, const Material& m) {
+    switch (m.model) {
+        case ShadingModel::kUnlit:
+            return;
+        case ShadingModel::kMetallicRoughness:
+            Part(json, "specular")
+                .number("strength", m.specular_strength)
+                .color("color", m.specular_color)
+                .texture("strength_texture", m.texture(TextureSlot::kSpecular))
+                .texture("color_texture", m.texture(TextureSlot::kSpecularColor));
+            return;
+        case ShadingModel::kSpecularGlossiness:
+            Part(json, "specular_glossiness")
+                .color("specular", m.specular_color)
+                .number("glossiness", 1 - m.roughness)
+                .texture("texture", m.texture(TextureSlot::kSpecularColor));
+            return;
+        case ShadingModel::kLambert:
+            Part(json, "textbook").color("ambient", m.ambient).color("diffuse", m.diffuse);
+            return;
+        case ShadingModel::kPhong:
+        case ShadingModel::kBlinnPhong:
+            Part(json, "textbook")
+                .color("ambient", m.ambient)
+                .color("diffuse", m.diffuse)
+                .color("specular", m.specular)
+                .number("shininess", m.shininess)
+                .texture("specular_texture", m.texture(TextureSlot::kSpecularColor))
+                .texture("shininess_texture", m.texture(TextureSlot::kSpecular));
+    }
+}
+
 }  // namespace
 
 std::string number(double value) {
@@ -85,8 +118,8 @@ std::string material_text(const Material& m) {
     add(m.ior != plain.ior, "ior", m.ior);
     const bool specular = is_textured(m.texture(TextureSlot::kSpecular)) ||
                           is_textured(m.texture(TextureSlot::kSpecularColor)) ||
-                          !(m.specular_color == plain.specular_color);
-    add(specular || m.specular_strength != plain.specular_strength, "specular", m.specular_strength);
+                          !(m.specular_color == plain.specular_color) || m.specular_strength != plain.specular_strength;
+    add(specular && m.model == ShadingModel::kMetallicRoughness, "specular", m.specular_strength);
     add(!(m.clearcoat == plain.clearcoat), "clearcoat", m.clearcoat.strength);
     add(!(m.sheen == plain.sheen), "sheen roughness", m.sheen.roughness);
     add(!(m.transmission == plain.transmission), "transmission", m.transmission.strength);
@@ -100,11 +133,7 @@ std::string material_text(const Material& m) {
 void write_material(JsonWriter& json, const Material& m) {
     const Material plain;
     json.member("model", model_name(m)).member("alpha_mode", alpha_name(m)).member("ior", m.ior);
-    Part(json, "specular")
-        .number("strength", m.specular_strength)
-        .color("color", m.specular_color)
-        .texture("strength_texture", m.texture(TextureSlot::kSpecular))
-        .texture("color_texture", m.texture(TextureSlot::kSpecularColor));
+    write_reflection(json, m);
     if (const Clearcoat& c = m.clearcoat; !(c == plain.clearcoat))
         Part(json, "clearcoat")
             .number("strength", c.strength)

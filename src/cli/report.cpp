@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <cstdio>
 
 namespace tessera::cli {
@@ -21,12 +22,49 @@ std::string shortened(std::string_view text) {
     return std::string(text.substr(0, head)) + " ... " + std::string(text.substr(tail));
 }
 
+struct Character {
+    std::uint32_t code = 0;
+    std::size_t bytes = 0;  // 0: no UTF-8
+};
+
+// RFC 3629: the shortest form only, no surrogates, nothing above U+10FFFF.
+Character character_at(std::string_view text, std::size_t at) {
+    const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
+    const std::uint32_t first = byte(at);
+    if (first < 0x80) return {first, 1};
+    const std::size_t bytes = first >= 0xf0 ? 4 : first >= 0xe0 ? 3 : 2;
+    if (first < 0xc2 || first > 0xf4 || text.size() - at < bytes) return {};
+    std::uint32_t code = first & (0x7fu >> bytes);
+    for (std::size_t i = at + 1; i < at + bytes; ++i) {
+        if ((byte(i) & 0xc0) != 0x80) return {};
+        code = code << 6 | (byte(i) & 0x3fu);
+    }
+    constexpr std::uint32_t kLeast[] = {0, 0, 0x80, 0x800, 0x10000};
+    if (code < kLeast[bytes] || code > 0x10ffff || (code >= 0xd800 && code < 0xe000)) return {};
+    return {code, bytes};
+}
+
+// Controls of terminals (C0, C1), ends of lines, and what turns the direction of the text around it.
+bool is_steering(std::uint32_t c) {
+    return c < 0x20 || (c >= 0x7f && c < 0xa0) || c == 0x2028 || c == 0x2029 || (c >= 0x202a && c <= 0x202e) ||
+           (c >= 0x2066 && c <= 0x2069);
+}
+
 }  // namespace
 
 std::string printable(std::string_view text) {
-    std::string clean = shortened(text);
-    for (char& c : clean)
-        if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = ' ';
+    const std::string line = shortened(text);
+    std::string clean;
+    for (std::size_t at = 0; at < line.size();) {
+        const Character c = character_at(line, at);
+        if (c.bytes == 0)
+            clean += "\xef\xbf\xbd";  // U+FFFD
+        else if (is_steering(c.code))
+            clean += ' ';
+        else
+            clean.append(line, at, c.bytes);
+        at += std::max<std::size_t>(c.bytes, 1);
+    }
     return clean;
 }
 
