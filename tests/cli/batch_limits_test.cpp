@@ -87,6 +87,22 @@ TEST_F(CliBatch, BEY3_ASceneTooLargeForItsShareIsDoneAlone) {
     EXPECT_FALSE(fits(low / 2, "4"));
 }
 
+TEST_F(CliBatch, BEY3_TheTimeOfEncodingCounts) {
+    const Strings base{
+        "batch", scene("spheres.gltf"),        "-q",        "-s", "1500x1500", "--samples", "1", "--png-level", "9",
+        "-o",    in_folder("out/{model}.png"), "--threads", "1"};
+    ASSERT_EQ(run_command(base + Strings{"--report", in_folder("run.json")}).code, 0);
+    fs::remove_all(folder_ / "out");
+    simdjson::dom::parser parser;
+    const auto first = parsed(parser, read_file(in_folder("run.json")))["scenes"].at(0);
+    const double drawn = double(first["load_ms"]) + double(first["render_ms"]);
+    if (double(first["encode_ms"]) < 4 * drawn) GTEST_SKIP() << "drawing takes most of the time here";
+    const Outcome run = run_command(base + Strings{"--timeout", std::to_string(2 * drawn / 1000)});
+    EXPECT_EQ(run.code, 6) << run.err;
+    EXPECT_NE(run.err.find("--timeout: not finished"), std::string::npos) << run.err;
+    EXPECT_EQ(tree(in_folder("out")).size(), 0u);
+}
+
 TEST_F(CliBatch, BEY3_TimeIsLimitedPerScene) {
     const Outcome run =
         run_command({"batch", scene("spheres.gltf"), models(), "-o", in_folder("out/{path}.png"), "--engine",
