@@ -159,12 +159,12 @@ Bytes ZipFiles::read_entry(LoadContext& context, const std::string& name, std::u
         unzGetCurrentFileInfo64(archive_->zip, &info, nullptr, 0, nullptr, 0, nullptr, 0) != UNZ_OK)
         fail("is damaged");
     if (info.flag & 1) fail("is encrypted");
+    // minizip opens bzip2 too, and then reads nothing.
+    if (info.compression_method != 0 && info.compression_method != Z_DEFLATED)
+        fail("is packed with " + packing_name(info.compression_method) + "; only stored and deflated files are read");
     const std::uint64_t size = std::min<std::uint64_t>(info.uncompressed_size, most);
     context.charge(size, place);
-    if (unzOpenCurrentFile(archive_->zip) != UNZ_OK) {
-        if (info.compression_method == 0 || info.compression_method == Z_DEFLATED) fail("is damaged");
-        fail("is packed with " + packing_name(info.compression_method) + "; only stored and deflated files are read");
-    }
+    if (unzOpenCurrentFile(archive_->zip) != UNZ_OK) fail("is damaged");
     const auto close = [&] { return unzCloseCurrentFile(archive_->zip); };
     Bytes bytes(static_cast<std::size_t>(size));
     std::size_t done = 0;
