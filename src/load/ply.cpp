@@ -399,7 +399,7 @@ Scene read_ply(LoadContext& context, std::span<const std::byte> file, const Scen
         parts = lines_or_points(context, std::move(mesh));
     } else {
         if (!mesh.edges.empty())
-            context.warn("the " + std::to_string(mesh.edges.size() / 2) + " edges beside the faces are not drawn");
+            context.warn("edges beside the faces are not drawn; there are " + std::to_string(mesh.edges.size() / 2));
         if (mesh.normals.empty())
             make_normals(context, mesh, triangles);
         else
