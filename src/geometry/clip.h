@@ -30,4 +30,22 @@ void clip_by_plane(const std::vector<Vertex>& in, std::vector<Vertex>& out, cons
     }
 }
 
+// Distances, up to a factor, to the near plane (0) and to the sides of a volume `guard` times as wide as the picture (1
+// to 4): not negative inside.
+inline double guard_distance(const HomogeneousPoint& p, int plane, double guard) {
+    const double g = guard * p.w;
+    switch (plane) {
+        case 0:
+            return p.w - p.z;
+        case 1:
+            return g + p.x;
+        case 2:
+            return g - p.x;
+        case 3:
+            return g + p.y;
+        default:
+            return g - p.y;
+    }
+}
+
 }  // namespace tessera

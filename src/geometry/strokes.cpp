@@ -62,23 +62,6 @@ float unsnap(std::int32_t target, float w, float pixels) {
     return value;
 }
 
-// Distances, up to a factor, to the planes where lines are cut: the near one, and some way beside the picture.
-double cut_distance(const HomogeneousPoint& p, int plane, double guard) {
-    const double g = guard * p.w;
-    switch (plane) {
-        case 0:
-            return p.w - p.z;
-        case 1:
-            return g + p.x;
-        case 2:
-            return g - p.x;
-        case 3:
-            return g + p.y;
-        default:
-            return g - p.y;
-    }
-}
-
 }  // namespace
 
 StrokeSpace::StrokeSpace(const FrameCamera& camera, const StrokeStyle& style)
@@ -213,7 +196,7 @@ void StrokeMesh::add_segment(std::uint32_t element, std::uint32_t from, std::uin
     a.source = {from, to, 0};
     b.source = {from, to, 1};
     for (int plane = 0; plane < 5; ++plane) {
-        const double da = cut_distance(a.clip, plane, space.guard), db = cut_distance(b.clip, plane, space.guard);
+        const double da = guard_distance(a.clip, plane, space.guard), db = guard_distance(b.clip, plane, space.guard);
         if (da < 0 && db < 0) return;
         if (da < 0) a.cut(b, db / (db - da));
         if (db < 0) b.cut(a, da / (da - db));

@@ -5,10 +5,6 @@
 namespace tessera {
 namespace {
 
-std::size_t vertex_references(const Primitive& primitive) {
-    return primitive.indices.empty() ? primitive.positions.size() : primitive.indices.size();
-}
-
 std::vector<std::uint32_t> first_vertices(std::size_t count) {
     std::vector<std::uint32_t> v(count);
     std::iota(v.begin(), v.end(), 0u);
@@ -36,42 +32,6 @@ std::vector<std::uint32_t> fan_triples(std::span<const std::uint32_t> v, std::si
 }
 
 }  // namespace
-
-std::size_t triangle_count(const Primitive& primitive) {
-    const std::size_t n = vertex_references(primitive);
-    switch (primitive.mode) {
-        case PrimitiveMode::kTriangles:
-            return n / 3;
-        case PrimitiveMode::kTriangleStrip:
-        case PrimitiveMode::kTriangleFan:
-            return n < 3 ? 0 : n - 2;
-        case PrimitiveMode::kPoints:
-        case PrimitiveMode::kLines:
-        case PrimitiveMode::kLineLoop:
-        case PrimitiveMode::kLineStrip:
-            break;
-    }
-    return 0;
-}
-
-std::size_t element_count(const Primitive& primitive) {
-    const std::size_t n = vertex_references(primitive);
-    switch (primitive.mode) {
-        case PrimitiveMode::kPoints:
-            return n;
-        case PrimitiveMode::kLines:
-            return n / 2;
-        case PrimitiveMode::kLineLoop:
-            return n < 2 ? 0 : n;
-        case PrimitiveMode::kLineStrip:
-            return n < 2 ? 0 : n - 1;
-        case PrimitiveMode::kTriangles:
-        case PrimitiveMode::kTriangleStrip:
-        case PrimitiveMode::kTriangleFan:
-            break;
-    }
-    return triangle_count(primitive);
-}
 
 std::array<std::uint32_t, 2> stroke_vertices(const Primitive& primitive, std::uint32_t element) {
     const bool list = primitive.mode == PrimitiveMode::kLines;

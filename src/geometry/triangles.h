@@ -6,6 +6,8 @@
 
 #include <tessera/scene.h>
 
+#include "scene/counts.h"
+
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -19,12 +21,6 @@ constexpr bool has_triangles(PrimitiveMode mode) {
     return mode == PrimitiveMode::kTriangles || mode == PrimitiveMode::kTriangleStrip ||
            mode == PrimitiveMode::kTriangleFan;
 }
-
-// Number of triangles, without building them.
-std::size_t triangle_count(const Primitive& primitive);
-
-// Number of complete points, lines or triangles.
-std::size_t element_count(const Primitive& primitive);
 
 // The vertices of point `element` (twice the same) or line `element`.
 std::array<std::uint32_t, 2> stroke_vertices(const Primitive& primitive, std::uint32_t element);

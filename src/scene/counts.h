@@ -37,9 +37,15 @@ constexpr std::uint64_t element_count(PrimitiveMode mode, std::uint64_t vertices
     }
 }
 
+// How many vertices it refers to, in order.
+inline std::uint64_t vertex_references(const Primitive& primitive) {
+    return primitive.indices.empty() ? primitive.positions.size() : primitive.indices.size();
+}
 inline std::uint64_t triangle_count(const Primitive& primitive) {
-    return triangle_count(primitive.mode,
-                          primitive.indices.empty() ? primitive.positions.size() : primitive.indices.size());
+    return triangle_count(primitive.mode, vertex_references(primitive));
+}
+inline std::uint64_t element_count(const Primitive& primitive) {
+    return element_count(primitive.mode, vertex_references(primitive));
 }
 
 }  // namespace tessera

@@ -15,23 +15,6 @@ SnappedVertex snap_point(const HomogeneousPoint& p, const ProjectionView& projec
     return {static_cast<std::int32_t>(round_even(px * 256.0)), static_cast<std::int32_t>(round_even(py * 256.0))};
 }
 
-// The planes at which a triangle must be clipped, as distances that are not negative inside.
-double guard_distance(const HomogeneousPoint& p, int plane) {
-    const double g = static_cast<double>(kGuardBand) * p.w;
-    switch (plane) {
-        case 0:
-            return p.w - p.z;  // near
-        case 1:
-            return g + p.x;
-        case 2:
-            return g - p.x;
-        case 3:
-            return g + p.y;
-        default:
-            return g - p.y;
-    }
-}
-
 // The homogeneous edge functions of a triangle as planes over normalised device coordinates:
 // the barycentrics of the point seen at (x, y), over its w, are (bx x + by y + bc) / det.
 struct HomogeneousEdges {
@@ -102,7 +85,9 @@ void setup_clipped(const ProjectionView& projection, TriangleSetup& t) {
     std::vector<HomogeneousPoint> in, out;
     for (const ClipVertex<float>& v : t.vertices) in.push_back({v.x, v.y, v.z, v.w});
     for (int plane = 0; plane < 5; ++plane) {
-        clip_by_plane(in, out, [plane](const HomogeneousPoint& p) { return guard_distance(p, plane); });
+        clip_by_plane(in, out, [plane](const HomogeneousPoint& p) {
+            return guard_distance(p, plane, static_cast<double>(kGuardBand));
+        });
         std::swap(in, out);
     }
     t.kind = TriangleSetup::Kind::kOutside;
