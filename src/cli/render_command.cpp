@@ -206,9 +206,10 @@ int run(const RenderArguments& arguments) {
         throw Error(ErrorCode::kLimit, "--size: more pixels than --max-pixels allows");
     check_outputs(job, arguments);
     if (job.codec == Codec::kVideo) {
-        if (job.skip_existing) StaleFiles().remove(arguments.output);
-        if (job.skip_existing && ::access(arguments.output.c_str(), F_OK) == 0) return kFine;
-        find_ffmpeg(arguments.output);
+        const std::string file = video_file(job, arguments);
+        if (job.skip_existing) StaleFiles().remove(file);
+        if (job.skip_existing && ::access(file.c_str(), F_OK) == 0) return kFine;
+        find_ffmpeg(file);
     }
 
     Deadline deadline(job.timeout, input_name(arguments.scene));
