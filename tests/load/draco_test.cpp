@@ -72,7 +72,7 @@ std::string gltf(const std::vector<std::uint8_t>& packed, std::size_t vertices, 
 constexpr int kMethods[] = {draco::MESH_SEQUENTIAL_ENCODING, draco::MESH_EDGEBREAKER_ENCODING};
 
 // The largest resident memory of a process that loads the text, above what it began with, in MiB.
-double memory_of_loading(const std::string& text, const LoadOptions& options, bool expect_limit) {
+[[maybe_unused]] double memory_of_loading(const std::string& text, const LoadOptions& options, bool expect_limit) {
     const pid_t child = ::fork();
     if (child == 0) {
         struct rusage before {
