@@ -1,5 +1,6 @@
 // Files: choosing codecs, errors that name the file, output that is whole or not there, and the
 // hostile collection.
+#include "image/files.h"
 #include "image/pictures.h"
 
 #include <tessera/error.h>
@@ -19,6 +20,7 @@ namespace tessera {
 namespace {
 
 namespace fs = std::filesystem;
+using test::error_of;
 using test::same_pixels;
 using test::sphere_picture;
 
@@ -36,18 +38,6 @@ class WriteImage : public testing::Test {
     }
     fs::path folder_;
 };
-
-// The error of a call, which must be one.
-template <class Call>
-Error error_of(const Call& call) {
-    try {
-        call();
-    } catch (const Error& e) {
-        return e;
-    }
-    ADD_FAILURE() << "no error";
-    return {ErrorCode::kInternal, ""};
-}
 
 TEST_F(WriteImage, ReadsBackWhatItWrote) {
     const Image image = sphere_picture(50, 40, true);
