@@ -31,14 +31,14 @@ void run_kernel(benchmark::State& state, const KernelCase& c, Isa isa) {
     const KernelWork work = c.make();
     const auto once = [&](Isa by) {
         work.clear();
-        work.run(raster_kernels(by));
+        work.run(Kernels(by));
         return work.output();
     };
     if (!same(once(Isa::kScalar), once(isa))) {
         state.SkipWithError("the output is not the scalar kernel's");
         return;
     }
-    const RasterKernels& kernels = raster_kernels(isa);
+    const Kernels kernels(isa);
     for (auto _ : state) {
         work.clear();
         state.SetIterationTime(work.run(kernels));

@@ -4,9 +4,10 @@
 
 #include "cli/workloads.h"
 #include "core/parallel.h"
-#include "raster/tile.h"
+#include "raster/engine.h"
 #include "render/options.h"
 #include "render/shading_scene.h"
+#include "tile/tile.h"
 
 #include <cstddef>
 #include <functional>
@@ -32,7 +33,7 @@ class BenchFrame {
     explicit BenchFrame(const std::string& name);
 
     FrontEndInput input(const RasterKernels& kernels) const;
-    TileTask task(const RasterSettings& settings, const RasterTargets& targets, const FrontEnd& front) const;
+    TileTask task(const RasterSettings& settings, const PictureTargets& targets, const FrontEnd& front) const;
     // Settings of a picture drawn with this instruction set.
     RasterSettings settings(Isa isa) const;
 
@@ -50,12 +51,17 @@ class BenchFrame {
     std::function<void()> checkpoint_ = [] {};
 };
 
+// All kernels that draw tiles.
+struct Kernels : RasterKernels, TileKernels {
+    explicit Kernels(Isa isa) : RasterKernels(raster_kernels(isa)), TileKernels(tile_kernels(isa)) {}
+};
+
 // One kernel's job in the making.
 struct KernelWork {
-    std::uint64_t items;                              // pixels, triangles, vertices or indices
-    std::function<void()> clear;                      // what it writes; not timed
-    std::function<double(const RasterKernels&)> run;  // seconds of processor time in the kernel
-    std::function<Bytes()> output;                    // all that the last run wrote
+    std::uint64_t items;                        // pixels, triangles, vertices or indices
+    std::function<void()> clear;                // what it writes; not timed
+    std::function<double(const Kernels&)> run;  // seconds of processor time in the kernel
+    std::function<Bytes()> output;              // all that the last run wrote
 };
 
 struct KernelCase {

@@ -58,8 +58,8 @@ FrontEndInput BenchFrame::input(const RasterKernels& kernels) const {
     return {frame, shading->context(), kernels, grid, samples_, checkpoint_};
 }
 
-TileTask BenchFrame::task(const RasterSettings& settings, const RasterTargets& targets, const FrontEnd& binned) const {
-    return {frame, shading->context(), settings, targets, grid, binned};
+TileTask BenchFrame::task(const RasterSettings& settings, const PictureTargets& targets, const FrontEnd& binned) const {
+    return {frame, shading->context(), settings, targets, grid, binned.vertices()};
 }
 
 RasterSettings BenchFrame::settings(Isa isa) const {

@@ -53,7 +53,7 @@ KernelWork front_end_work(const std::string& workload, SetProbe set_probe) {
     KernelWork work{};
     work.items = probe.items;
     work.clear = [] {};
-    work.run = [=](const RasterKernels& kernels) { return draw(kernels, nullptr); };
+    work.run = [=](const Kernels& kernels) { return draw(kernels, nullptr); };
     // The frame again, with a copy of all that the kernel writes: copying beside the timed runs would cool its caches.
     work.output = [=] {
         state->output.clear();

@@ -42,11 +42,11 @@ StageWork tiles_work(const std::string& workload, Isa isa, int threads) {
         BenchFrame& frame;
         Arena arena;
         std::vector<std::uint8_t> picture;
-        RasterTargets targets;
+        PictureTargets targets;
         RasterSettings settings;
         TileTask task;
-        std::mutex mutex;
-        std::vector<std::unique_ptr<Tile>> idle;
+        RasterSource source;
+        TilePool<RasterVisibility> tiles;
 
         State(BenchFrame& f, Isa isa, int n)
             : frame(f),
@@ -54,27 +54,20 @@ StageWork tiles_work(const std::string& workload, Isa isa, int threads) {
               picture(4 * static_cast<std::size_t>(f.workload.options.width * f.workload.options.height)),
               targets{picture.data()},
               settings(f.settings(isa)),
-              task(f.task(settings, targets, f.front)) {
-            for (int i = 0; i < n; ++i) idle.push_back(std::make_unique<Tile>());
-        }
-        void draw(int index) {
-            std::unique_ptr<Tile> tile;
-            {
-                const std::lock_guard lock(mutex);
-                tile = std::move(idle.back());
-                idle.pop_back();
-            }
-            tile->draw(task, index);
-            const std::lock_guard lock(mutex);
-            idle.push_back(std::move(tile));
-        }
+              task(f.task(settings, targets, f.front)),
+              source{&f.front,
+                     &task.source,
+                     &raster_kernels(isa),
+                     settings.hierarchical_z,
+                     settings.count,
+                     settings.max_fragments,
+                     {}} {}
     };
     const auto state = std::make_shared<State>(BenchFrame::of(workload), isa, threads);
     StageWork work{};
     work.items = state->picture.size() / 4;
     work.run = [=] {
-        state->arena.for_each(static_cast<std::size_t>(state->frame.grid.count()),
-                              [&](std::size_t tile) { state->draw(static_cast<int>(tile)); });
+        state->tiles.draw(state->task, state->arena, [&](RasterVisibility& v) { v.begin(state->source); });
     };
     work.output = [=] {
         Bytes bytes;

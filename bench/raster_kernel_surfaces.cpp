@@ -19,7 +19,7 @@ struct SurfaceTile : MiddleTile {
             list.push_back(triangles[o - 1].triangle);
         }
         records.resize((list.size() + kMaxLanes) * floats);
-        raster_kernels(Isa::kScalar).make_surfaces(surface_job());
+        tile_kernels(Isa::kScalar).make_surfaces(surface_job());
     }
     SurfaceJob surface_job() {
         return {&task.source, 0, layout, list.data(), static_cast<std::uint32_t>(list.size()), records.data()};
@@ -70,7 +70,7 @@ KernelWork make_surfaces_work(const std::string& workload) {
     KernelWork work{};
     work.items = count;
     work.clear = [=] { std::fill(tile->records.begin(), tile->records.end(), -1.0f); };
-    work.run = [=](const RasterKernels& kernels) {
+    work.run = [=](const Kernels& kernels) {
         const SurfaceJob job = tile->surface_job();
         return seconds_of([&] { kernels.make_surfaces(job); });
     };
@@ -115,7 +115,7 @@ KernelWork shade_tile_work(const std::string& workload, bool uniform, Shade how)
         std::fill(state->hit.begin(), state->hit.end(), 0u);
         std::fill(state->pixels.begin(), state->pixels.end(), std::uint8_t{0x5a});
     };
-    work.run = [=](const RasterKernels& kernels) {
+    work.run = [=](const Kernels& kernels) {
         const SurfaceTile& t = state->tile;
         ShadeJob job = t.shade_job();
         job.x0 = t.x0;
@@ -167,7 +167,7 @@ KernelWork shade_points_work(const std::string& workload) {
     KernelWork work{};
     work.items = state->count();
     work.clear = [=] { state->colors.clear(); };
-    work.run = [=](const RasterKernels& kernels) {
+    work.run = [=](const Kernels& kernels) {
         ShadeJob job = state->tile.shade_job();
         job.x = state->x.data();
         job.y = state->y.data();
@@ -185,7 +185,7 @@ KernelWork label_surfaces_work(const std::string& workload) {
     struct State {
         SurfaceTile tile;
         std::vector<float> normal, position;
-        RasterTargets space;
+        PictureTargets space;
         explicit State(const std::string& name)
             : tile(name), normal(3 * tile.ordinal.size()), position(3 * tile.ordinal.size()) {}
     };
@@ -196,7 +196,7 @@ KernelWork label_surfaces_work(const std::string& workload) {
         std::fill(state->normal.begin(), state->normal.end(), -2.0f);
         std::fill(state->position.begin(), state->position.end(), -2.0f);
     };
-    work.run = [=](const RasterKernels& kernels) {
+    work.run = [=](const Kernels& kernels) {
         const SurfaceTile& t = state->tile;
         LabelSurfaceJob job{};
         job.source = &t.task.source;
@@ -241,11 +241,11 @@ KernelWork develop_work(ToneMap tone_map, Encoding encoding, bool background) {
     shade.first = true;
     shade.hit = state->hit.data();
     state->sums.point(shade);
-    raster_kernels(Isa::kScalar).shade_tile(shade);
+    tile_kernels(Isa::kScalar).shade_tile(shade);
     KernelWork work{};
     work.items = state->tile.ordinal.size();
     work.clear = [=] { std::fill(state->pixels.begin(), state->pixels.end(), std::uint8_t{0x5a}); };
-    work.run = [=](const RasterKernels& kernels) {
+    work.run = [=](const Kernels& kernels) {
         DevelopJob job{};
         job.film = state->tile.settings.film;
         job.film.tone_map = tone_map;

@@ -72,7 +72,7 @@ class MiddleTile {
 
     BenchFrame& frame;
     const RasterSettings settings;
-    const RasterTargets targets;
+    const PictureTargets targets;
     const TileTask task;
     const int side;
     int x0, y0;

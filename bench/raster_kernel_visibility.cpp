@@ -13,7 +13,7 @@ KernelWork visibility_work(const std::string& workload, bool hierarchical_z, Ite
     const std::uint64_t samples = tile->see();
     work.items = items == Items::kTriangles ? tile->triangle_count : samples;
     work.clear = [=] { tile->clear(); };
-    work.run = [=](const RasterKernels& kernels) {
+    work.run = [=](const Kernels& kernels) {
         VisibilityJob job = tile->visibility(hierarchical_z, false);
         return seconds_of([&] { kernels.visibility(job); });
     };
@@ -45,7 +45,7 @@ KernelWork find_visible_work(const std::string& workload) {
         std::fill(state->seen.begin(), state->seen.end(), std::uint8_t{0xff});
         std::fill(state->list.begin(), state->list.end(), ~0u);
     };
-    work.run = [=](const RasterKernels& kernels) {
+    work.run = [=](const Kernels& kernels) {
         VisibleJob job{state->tile.ordinal.data(), static_cast<int>(state->tile.ordinal.size()),
                        state->tile.triangle_count, state->seen.data(),
                        state->list.data(),         0};
@@ -79,7 +79,7 @@ KernelWork label_work(const std::string& workload) {
         std::fill(state->distance.begin(), state->distance.end(), -1.0f);
         std::fill(state->triangle.begin(), state->triangle.end(), ~0u);
     };
-    work.run = [=](const RasterKernels& kernels) {
+    work.run = [=](const Kernels& kernels) {
         const MiddleTile& t = state->tile;
         LabelJob job{};
         job.projection = t.frame.frame.projection;

@@ -21,6 +21,24 @@ TESSERA_INLINE void store_records(Pointer&& pointer, float a, float b, float c, 
 // kLanes consecutive records of three floats.
 TESSERA_INLINE void load_triples(const float* p, float& a, float& b, float& c) { a = p[0], b = p[1], c = p[2]; }
 
+// An array of records of kNumbers floats that may be read four floats at a time: the last record, after
+// which memory may end, is read from a copy.
+template <int kNumbers>
+struct RecordArray {
+    const float* base = nullptr;
+    std::uint32_t last = 0;
+    float tail[4] = {0, 0, 0, 0};
+
+    TESSERA_INLINE RecordArray() = default;
+    TESSERA_INLINE RecordArray(const float* array, std::uint32_t count) : base(array), last(count - 1) {
+        if (array)
+            for (int i = 0; i < kNumbers; ++i) tail[i] = array[std::size_t{last} * kNumbers + i];
+    }
+    TESSERA_INLINE const float* at(std::uint32_t i) const {
+        return i == last ? tail : base + std::size_t{i} * kNumbers;
+    }
+};
+
 // Eight numbers at a time to pointer(0), pointer(1), ..., or all of them where the vector has fewer.
 template <class Pointer>
 TESSERA_INLINE void store_eights(Pointer&& pointer, std::uint32_t a) {

@@ -4,8 +4,8 @@
 
 #include "core/parallel.h"
 #include "geometry/frame.h"
-#include "raster/buffer.h"
 #include "raster/kernels.h"
+#include "tile/buffer.h"
 
 #include <functional>
 #include <vector>

@@ -163,12 +163,6 @@ void add(FrontCounters& sum, const FrontCounters& c) {
 
 }  // namespace
 
-TileGrid::TileGrid(int width, int height, int tile_side)
-    : side(tile_side),
-      shift(std::countr_zero(static_cast<unsigned>(tile_side))),
-      columns((width + tile_side - 1) / tile_side),
-      rows((height + tile_side - 1) / tile_side) {}
-
 void FrontEnd::make_chunks(const FrontEndInput& input, int threads) {
     const Frame& frame = input.frame;
     const std::uint32_t size =

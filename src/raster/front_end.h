@@ -6,20 +6,13 @@
 #include "core/parallel.h"
 #include "geometry/frame.h"
 #include "raster/frame_vertices.h"
+#include "tile/visible_tile.h"
 
 #include <functional>
 #include <mutex>
 #include <vector>
 
 namespace tessera {
-
-// Tiles over the picture, row after row.
-struct TileGrid {
-    int side, shift, columns, rows;  // side: 32, 64 or 128 pixels, 1 << shift
-
-    TileGrid(int width, int height, int tile_side);
-    int count() const { return columns * rows; }
-};
 
 // What one chunk gave. The runs of tile t are runs[begin[t]] to runs[begin[t + 1]].
 struct BinnedChunk {

@@ -7,24 +7,6 @@
 
 namespace tessera::TESSERA_ISA_NAMESPACE {
 
-// An array of records of `stride` floats that may be read four floats at a time: the last record, after
-// which memory may end, is read from a copy.
-template <int kNumbers>
-struct RecordArray {
-    const float* base = nullptr;
-    std::uint32_t last = 0;
-    float tail[4] = {0, 0, 0, 0};
-
-    TESSERA_INLINE RecordArray() = default;
-    TESSERA_INLINE RecordArray(const float* array, std::uint32_t count) : base(array), last(count - 1) {
-        if (array)
-            for (int i = 0; i < kNumbers; ++i) tail[i] = array[std::size_t{last} * kNumbers + i];
-    }
-    TESSERA_INLINE const float* at(std::uint32_t i) const {
-        return i == last ? tail : base + std::size_t{i} * kNumbers;
-    }
-};
-
 // What says why a vertex is not plain (see transform()).
 TESSERA_INLINE Uint codes_of(const ClipVertex<Float>& clip) {
     const Float largest(kLargestCoordinate);

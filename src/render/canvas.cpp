@@ -47,7 +47,7 @@ void Canvas::take_sample(int sample, ReferenceEngine& engine, const Visibility& 
     std::fill(sums_.begin(), sums_.end(), 0.0f);
 }
 
-void Canvas::develop(const FilmView& film, const RasterTargets& targets, RenderStats& stats) {
+void Canvas::develop(const FilmView& film, const PictureTargets& targets, RenderStats& stats) {
     if (filter_) {
         develop_picture(filter_->finish(), 1.0f, film, options_, nullptr, targets);
         stats.pixels_covered = filter_->pixels_covered();
@@ -58,7 +58,7 @@ void Canvas::develop(const FilmView& film, const RasterTargets& targets, RenderS
 }
 
 void develop_picture(const float* sums, float weight, const FilmView& film, const RenderOptions& options, Arena* arena,
-                     const RasterTargets& targets) {
+                     const PictureTargets& targets) {
     for_each_row(options.height, arena, [&](int y) {
         const auto width = static_cast<std::size_t>(options.width), row = static_cast<std::size_t>(y) * width;
         for (std::size_t pixel = row; pixel < row + width; ++pixel) {
@@ -107,8 +107,8 @@ void add_counters(RenderStats& stats, const RasterCounters& counters, bool first
     stats.tile_side = counters.tile_side;
 }
 
-RasterTargets make_planes(const RenderOptions& o, RenderResult& result) {
-    RasterTargets targets;
+PictureTargets make_planes(const RenderOptions& o, RenderResult& result) {
+    PictureTargets targets;
     targets.rgba = make_plane<std::uint8_t>(o.want_color, o, PixelFormat::kRgba8, result.color);
     // Alpha is taken from it.
     targets.linear = make_plane<float>(o.want_linear || o.want_alpha, o, PixelFormat::kRgba32f, result.linear);

@@ -23,7 +23,7 @@ class Canvas {
 
     // Filters, develops and writes the colour and linear planes that are wanted and the count of covered
     // pixels.
-    void develop(const FilmView& film, const RasterTargets& targets, RenderStats& stats);
+    void develop(const FilmView& film, const PictureTargets& targets, RenderStats& stats);
 
   private:
     // Adds one sample's colour to a pixel.
@@ -42,7 +42,7 @@ class Canvas {
 // Develops `sums` (RGBA per pixel, premultiplied) times `weight` into the colour and linear planes that
 // are wanted. `arena` runs the rows; null: the calling thread.
 void develop_picture(const float* sums, float weight, const FilmView& film, const RenderOptions& options, Arena* arena,
-                     const RasterTargets& targets);
+                     const PictureTargets& targets);
 
 // Adds a pass' counters to the statistics. The culling counters are those of the first pass: the
 // others cull the same triangles again.
@@ -51,7 +51,7 @@ void add_counters(RenderStats& stats, const RasterCounters& counters, bool first
 
 // The planes that the options ask for and those that they are made of, made where `result` does not have them yet; the
 // others are let go.
-RasterTargets make_planes(const RenderOptions& options, RenderResult& result);
+PictureTargets make_planes(const RenderOptions& options, RenderResult& result);
 // Afterwards: fills the planes that are made of others, and lets go of those.
 void finish_planes(const RenderOptions& options, RenderResult& result);
 

@@ -41,7 +41,7 @@ float distance_at(SurfaceSampler& sampler, std::uint32_t triangle, SamplePositio
 
 }  // namespace
 
-void set_label_space(const RenderOptions& options, const Frame& frame, RasterTargets& targets) {
+void set_label_space(const RenderOptions& options, const Frame& frame, PictureTargets& targets) {
     glm::dmat4 m(1.0);
     if (options.label_space == LabelSpace::kWorld) {
         m = rigid_inverse(frame.world_to_camera);
@@ -59,7 +59,7 @@ void set_label_space(const RenderOptions& options, const Frame& frame, RasterTar
 }
 
 LabelCounts take_labels(ReferenceEngine& engine, const Frame& frame, const RunControl& control,
-                        const RasterTargets& targets) {
+                        const PictureTargets& targets) {
     const Visibility seen = engine.see(kCentre, control);
     const std::vector<std::uint32_t> nearest = label_triangles(engine, seen);
     const LabelPlanes& planes = targets.labels;

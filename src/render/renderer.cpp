@@ -31,7 +31,7 @@ struct Renderer::Impl {
     }
 
     void draw(const Shot& now, const Shot& before, const Shot& after, RenderResult& result);
-    RasterTargets make_targets(RenderResult& result);
+    PictureTargets make_targets(RenderResult& result);
     void see_other(const Shot& shot, const Watchdog& watchdog, OtherShot& other);
     void draw_tiles(const Watchdog& watchdog, Stopwatch& watch, RenderResult& result);
     void draw_reference(const Watchdog& watchdog, Stopwatch& watch, RenderResult& result);
@@ -95,8 +95,8 @@ void Renderer::Impl::draw(const Shot& now, const Shot& earlier, const Shot& late
     watch.finish();
 }
 
-RasterTargets Renderer::Impl::make_targets(RenderResult& result) {
-    RasterTargets targets = make_planes(options, result);
+PictureTargets Renderer::Impl::make_targets(RenderResult& result) {
+    PictureTargets targets = make_planes(options, result);
     set_label_space(options, frame, targets);
     if (options.want_motion) {
         triangles.resize(static_cast<std::size_t>(options.width) * static_cast<std::size_t>(options.height));
@@ -113,7 +113,7 @@ void Renderer::Impl::see_other(const Shot& shot, const Watchdog& watchdog, Other
     other.keep_positions();
     shading.light(scene, other.frame, options);
     other.seen.resize(static_cast<std::size_t>(options.width) * static_cast<std::size_t>(options.height));
-    RasterTargets targets;
+    PictureTargets targets;
     targets.labels.triangle = other.seen.data();
     if (options.engine == Engine::kRaster) {
         raster.draw(other.frame, shading.context(),
@@ -127,11 +127,11 @@ void Renderer::Impl::see_other(const Shot& shot, const Watchdog& watchdog, Other
 // The tile rasterizer: visibility, shading and film inside each tile. With a filter that is wider than
 // the pixel, linear pictures of one sample each, and the film after the last of them.
 void Renderer::Impl::draw_tiles(const Watchdog& watchdog, Stopwatch& watch, RenderResult& result) {
-    const RasterTargets targets = make_targets(result);
+    const PictureTargets targets = make_targets(result);
     RasterSettings settings = raster_settings(options, shading.film(options), watchdog.control(0, 1));
     result.stats.isa = settings.isa;
     result.stats.threads = arena.threads();
-    const auto draw = [&](const RasterTargets& to, bool first) {
+    const auto draw = [&](const PictureTargets& to, bool first) {
         add_counters(result.stats, raster.draw(frame, shading.context(), settings, to, arena), first);
         watch.phase("tiles");
     };
@@ -144,7 +144,7 @@ void Renderer::Impl::draw_tiles(const Watchdog& watchdog, Stopwatch& watch, Rend
 
     filter->restart();
     const std::vector<SamplePosition> positions = std::move(settings.samples);
-    RasterTargets sample_targets = targets;
+    PictureTargets sample_targets = targets;
     sample_targets.rgba = nullptr;
     sample_targets.linear = sample_plane.data();
     for (int sample = 0; sample < options.samples; ++sample) {
@@ -166,7 +166,7 @@ void Renderer::Impl::draw_reference(const Watchdog& watchdog, Stopwatch& watch, 
     if (tracing && !is_square(frame.projection))
         throw Error(ErrorCode::kUsage, "reference-trace needs a picture that is square to the camera's axes");
     ReferenceEngine engine(frame, shading.context(), tracing, options.shadows);
-    const RasterTargets targets = make_targets(result);
+    const PictureTargets targets = make_targets(result);
     watch.phase("build");
 
     if (targets.colors()) {

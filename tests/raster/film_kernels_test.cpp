@@ -137,7 +137,7 @@ TEST_P(FilmKernels, Labels) {
         Planes got = planes(), want = planes();
         job.window.stride = 4 * got.node.stride;
         const bool with_distance = round % 3 != 1, with_numbers = round % 3 != 2;
-        const auto run = [&](const RasterKernels& k, Planes& p) {
+        const auto run = [&](const Kernels& k, Planes& p) {
             job.planes.distance = with_distance ? p.distance.pixels.data() : nullptr;
             job.planes.triangle = with_numbers ? p.triangle.pixels.data() : nullptr;
             job.planes.primitive = with_numbers ? p.primitive.pixels.data() : nullptr;

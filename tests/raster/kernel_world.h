@@ -7,6 +7,7 @@
 #include "raster/kernels.h"
 #include "shading/support.h"
 #include "simd/guarded_memory.h"
+#include "tile/kernels.h"
 
 #include <gtest/gtest.h>
 
@@ -16,14 +17,19 @@
 
 namespace tessera::test {
 
+// All kernels that draw tiles.
+struct Kernels : RasterKernels, TileKernels {
+    explicit Kernels(Isa isa) : RasterKernels(raster_kernels(isa)), TileKernels(tile_kernels(isa)) {}
+};
+
 // Kernels of one instruction set beside the one-lane ones.
 class KernelTest : public testing::TestWithParam<Isa> {
   protected:
     void SetUp() override {
         if (!isa_supported(GetParam())) GTEST_SKIP() << "this processor lacks " << name(GetParam());
     }
-    const RasterKernels& kernels() const { return raster_kernels(GetParam()); }
-    static const RasterKernels& scalar() { return raster_kernels(Isa::kScalar); }
+    Kernels kernels() const { return Kernels(GetParam()); }
+    static Kernels scalar() { return Kernels(Isa::kScalar); }
 
   private:
     FpEnvironment exact_;

@@ -71,7 +71,7 @@ TEST_P(RasterMemory, CARD8_BytesPerVisibleTriangleAndPixel) {
         const std::int64_t before = live;
         peak = before;
         std::vector<std::uint8_t> rgba(std::size_t{4} * kWidth * kHeight);
-        RasterTargets targets;
+        PictureTargets targets;
         targets.rgba = rgba.data();
         RasterEngine engine;
         const RasterCounters counters = engine.draw(p.frame, p.context(), settings, targets, arena);

@@ -102,7 +102,7 @@ struct ShadeSetting {
         records.resize((triangles.size() + kMaxLanes) * floats);
         const SurfaceJob job{&source,       0, layout, triangles.data(), static_cast<std::uint32_t>(triangles.size()),
                              records.data()};
-        raster_kernels(Isa::kScalar).make_surfaces(job);
+        tile_kernels(Isa::kScalar).make_surfaces(job);
         seen = static_cast<std::uint32_t>(triangles.size());
         for (std::uint32_t i = 0; i < seen; ++i) record_of.push_back(static_cast<std::uint32_t>(i * floats));
         records.resize(triangles.size() * floats);

@@ -2,7 +2,7 @@
 // surfaces at its pixels' centres. Part of a kernel file, once per instruction set.
 #pragma once
 
-#include "raster/point_kernel.h"
+#include "tile/point_kernel.h"
 
 namespace tessera::TESSERA_ISA_NAMESPACE {
 

@@ -2,7 +2,7 @@
 // per instruction set.
 #pragma once
 
-#include "raster/raster_data.h"
+#include "tile/tile_data.h"
 
 namespace tessera::TESSERA_ISA_NAMESPACE {
 

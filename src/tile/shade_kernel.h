@@ -3,7 +3,7 @@
 // that the reference uses with plain numbers. Part of a kernel file, once per instruction set.
 #pragma once
 
-#include "raster/point_kernel.h"
+#include "tile/point_kernel.h"
 
 namespace tessera::TESSERA_ISA_NAMESPACE {
 

@@ -2,8 +2,8 @@
 // kernel file, once per instruction set.
 #pragma once
 
-#include "raster/pixel_kernel.h"
-#include "raster/vertex_kernel.h"
+#include "simd/records.h"
+#include "tile/pixel_kernel.h"
 
 namespace tessera::TESSERA_ISA_NAMESPACE {
 

@@ -1,5 +1,5 @@
 // Kernels of labels, compiled once per instruction set.
-#include "raster/label_kernel.h"
+#include "tile/label_kernel.h"
 
 namespace tessera::TESSERA_ISA_NAMESPACE {
 

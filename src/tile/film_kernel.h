@@ -2,7 +2,7 @@
 // per instruction set.
 #pragma once
 
-#include "raster/visibility_kernel.h"
+#include "tile/pixel_kernel.h"
 
 namespace tessera::TESSERA_ISA_NAMESPACE {
 

@@ -4,7 +4,7 @@
 // instruction set.
 #pragma once
 
-#include "raster/surface_kernel.h"
+#include "tile/surface_kernel.h"
 
 namespace tessera::TESSERA_ISA_NAMESPACE {
 

@@ -1,34 +1,35 @@
 // Shading of a tile: surface records of what is seen, batches by material, transparent fragments.
-#include "raster/tile.h"
+#include "tile/tile.h"
 
 #include <algorithm>
 
 namespace tessera {
 
-// The ordinals that need a surface record, in order, to visible_, with 0 at the end; their count.
+// The ordinals that need a surface record, in order, to list_, with 0 at the end; their count.
 std::uint32_t Tile::list_visible() {
-    std::uint32_t* const list = visible_.reserve(triangle_count_ + 1);
+    std::uint32_t* const list = list_.reserve(visible_.triangle_count + 1);
     std::uint32_t count = 0;
     // Few triangles of one instance: to prepare them all costs less than to look for those that are seen.
-    const auto pixels = static_cast<std::uint32_t>(side_ * side_);
-    const TileTriangle* const triangles = triangles_.data();
-    if (triangle_count_ <= pixels / 64 && triangles[0].instance == triangles[triangle_count_ - 1].instance) {
-        while (count < triangle_count_) list[count] = count + 1, ++count;
+    const auto pixels = static_cast<std::uint32_t>(area_.side * area_.side);
+    const TileTriangle* const triangles = visible_.triangles.data();
+    if (visible_.triangle_count <= pixels / 64 &&
+        triangles[0].instance == triangles[visible_.triangle_count - 1].instance) {
+        while (count < visible_.triangle_count) list[count] = count + 1, ++count;
         list[count] = 0;
         return count;
     }
     VisibleJob visible{};
-    visible.ordinal = ordinal_.data();
-    visible.pixels = side_ * side_;
-    visible.triangle_count = triangle_count_;
-    visible.seen = seen_.reserve(triangle_count_ + 1);
+    visible.ordinal = visible_.ordinal.data();
+    visible.pixels = area_.side * area_.side;
+    visible.triangle_count = visible_.triangle_count;
+    visible.seen = seen_.reserve(visible_.triangle_count + 1);
     visible.list = list;
     task_->kernels.find_visible(visible);
     count = visible.count;
-    if (!fragments_.empty()) {
-        for (const Fragment& f : fragments_) seen_[f.ordinal] = 1;
+    if (!visible_.fragments.empty()) {
+        for (const TileFragment& f : visible_.fragments) seen_[f.ordinal] = 1;
         count = 0;
-        for (std::uint32_t i = 1; i <= triangle_count_; ++i)
+        for (std::uint32_t i = 1; i <= visible_.triangle_count; ++i)
             if (seen_[i]) list[count++] = i;
     }
     list[count] = 0;
@@ -37,22 +38,22 @@ std::uint32_t Tile::list_visible() {
 
 // Surface records of everything seen, in runs of one instance.
 void Tile::make_records(const std::vector<SurfaceLayout>& layouts) {
-    const std::uint32_t count = list_visible();
-    std::uint32_t* record_of = record_of_.reserve(triangle_count_ + 1);
+    const std::uint32_t count = seen_count_ = list_visible();
+    std::uint32_t* record_of = record_of_.reserve(visible_.triangle_count + 1);
     record_of[0] = 0;
     batch_.reserve(count);
     std::size_t used = 0;
     for (std::uint32_t first = 0; first < count;) {
-        const std::uint32_t instance = triangles_[visible_[first] - 1].instance;
+        const std::uint32_t instance = visible_.triangles[list_[first] - 1].instance;
         SurfaceJob job{};
         job.source = &task_->source;
         job.instance = instance;
         job.layout = layouts[instance];
         const auto floats = static_cast<std::size_t>(surface_floats(job.layout));
         std::uint32_t end = first;
-        for (; end < count && triangles_[visible_[end] - 1].instance == instance; ++end) {
-            batch_[end - first] = triangles_[visible_[end] - 1].triangle;
-            record_of[visible_[end]] = static_cast<std::uint32_t>(used + (end - first) * floats);
+        for (; end < count && visible_.triangles[list_[end] - 1].instance == instance; ++end) {
+            batch_[end - first] = visible_.triangles[list_[end] - 1].triangle;
+            record_of[list_[end]] = static_cast<std::uint32_t>(used + (end - first) * floats);
         }
         job.triangles = batch_.data();
         job.count = end - first;
@@ -75,19 +76,20 @@ ShadeJob Tile::shade_job(std::uint32_t instance) const {
 
 void Tile::take_sample(SamplePosition offset, bool first) {
     make_records(task_->shading_batches.layouts);
-    if (fragments_.empty()) return shade_opaque(offset, first, sum_);
+    if (visible_.fragments.empty()) return shade_opaque(offset, first, sum_);
     shade_opaque(offset, true, sample_);
     compose_fragments(offset);
     for (std::size_t c = 0; c < 4; ++c)
-        for (std::size_t i = 0; i < depth_.size(); ++i) sum_[c][i] = (first ? 0.0f : sum_[c][i]) + sample_[c][i];
+        for (std::size_t i = 0; i < visible_.depth.size(); ++i)
+            sum_[c][i] = (first ? 0.0f : sum_[c][i]) + sample_[c][i];
 }
 
 // The nearest opaque surface of every pixel: at once where the tile shows one material, else as a list.
 void Tile::shade_opaque(SamplePosition offset, bool first, Planes& planes) {
     std::uint32_t batch = 0;
     bool one = true, any = false;
-    for (const std::uint32_t* o = visible_.data(); *o != 0 && one; ++o) {
-        const std::uint32_t instance = triangles_[*o - 1].instance;
+    for (const std::uint32_t* o = list_.data(); *o != 0 && one; ++o) {
+        const std::uint32_t instance = visible_.triangles[*o - 1].instance;
         const AlphaMode mode = task_->shading.materials[task_->frame.instances[instance].material].alpha_mode;
         if (mode == AlphaMode::kBlend) continue;
         one = !any || batch == task_->shading_batches.batch_of[instance];
@@ -95,14 +97,15 @@ void Tile::shade_opaque(SamplePosition offset, bool first, Planes& planes) {
         any = true;
     }
     if (one && any) {
-        const bool at_once = task_->settings.samples.size() == 1 && fragments_.empty() && !task_->targets.linear;
+        const bool at_once =
+            task_->settings.samples.size() == 1 && visible_.fragments.empty() && !task_->targets.linear;
         const DevelopJob film = develop_job();
         ShadeJob job = shade_job(batch);
-        job.x0 = x0_;
-        job.y0 = y0_;
-        job.side = side_;
+        job.x0 = area_.x0;
+        job.y0 = area_.y0;
+        job.side = area_.side;
         job.offset = offset;
-        job.ordinal = ordinal_.data();
+        job.ordinal = visible_.ordinal.data();
         job.first = first;
         job.develop = at_once ? &film : nullptr;
         job.hit = hit_.data();
@@ -118,10 +121,10 @@ void Tile::shade_opaque(SamplePosition offset, bool first, Planes& planes) {
         for (std::vector<float>& plane : planes) std::fill(plane.begin(), plane.end(), 0.0f);
     point_pixel_.clear();
     point_ordinal_.clear();
-    for (std::uint32_t pixel = 0; pixel < ordinal_.size(); ++pixel)
-        if (ordinal_[pixel] != 0) {
+    for (std::uint32_t pixel = 0; pixel < visible_.ordinal.size(); ++pixel)
+        if (visible_.ordinal[pixel] != 0) {
             point_pixel_.push_back(pixel);
-            point_ordinal_.push_back(ordinal_[pixel]);
+            point_ordinal_.push_back(visible_.ordinal[pixel]);
         }
     shade_list(offset);
     for (std::size_t i = 0; i < point_pixel_.size(); ++i) {
@@ -137,7 +140,7 @@ void Tile::shade_list(SamplePosition offset) {
     const std::size_t count = point_ordinal_.size();
     for (std::vector<float>& plane : point_color_) plane.resize(count);
     const auto batch = [&](std::uint32_t point) {
-        return task_->shading_batches.batch_of[triangles_[point_ordinal_[point] - 1].instance];
+        return task_->shading_batches.batch_of[visible_.triangles[point_ordinal_[point] - 1].instance];
     };
     order_.resize(count);
     for (std::uint32_t i = 0; i < count; ++i) order_[i] = i;
@@ -154,9 +157,9 @@ void Tile::shade_list(SamplePosition offset) {
         for (std::vector<float>& plane : batch_color_) plane.resize(padded);
         for (std::size_t i = 0; i < padded; ++i) {
             const std::uint32_t point = order_[first + std::min(i, n - 1)];
-            const TilePixel p(point_pixel_[point], side_);
-            batch_x_[i] = 256 * (x0_ + p.x) + offset.x;
-            batch_y_[i] = 256 * (y0_ + p.y) + offset.y;
+            const TilePixel p(point_pixel_[point], area_.side);
+            batch_x_[i] = 256 * (area_.x0 + p.x) + offset.x;
+            batch_y_[i] = 256 * (area_.y0 + p.y) + offset.y;
             batch_ordinal_[i] = point_ordinal_[point];
         }
         ShadeJob job = shade_job(current);
@@ -179,7 +182,7 @@ void Tile::shade_list(SamplePosition offset) {
 void Tile::compose_fragments(SamplePosition offset) {
     point_pixel_.clear();
     point_ordinal_.clear();
-    for (const Fragment& f : fragments_) {
+    for (const TileFragment& f : visible_.fragments) {
         point_pixel_.push_back(f.pixel);
         point_ordinal_.push_back(f.ordinal);
     }

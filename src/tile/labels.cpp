@@ -1,24 +1,19 @@
 // Labels of a tile, at the pixel centre: of the nearest surface with alpha of at least one half.
-#include "raster/tile.h"
+#include "tile/tile.h"
 
 #include <algorithm>
 
 namespace tessera {
 
 // `seen`: the centre is the sample whose visibility stands.
-void Tile::label(bool seen) {
+void Tile::label(bool something, bool seen, TileVisibility& visibility) {
     clear_surface_labels();
-    if (triangle_count_ == 0) return write_labels(false);
-    const SamplePosition centre{128, 128};
-    if (!seen) {
-        const TileCounters before = counters;
-        find_visible(centre);
-        // Where colours are drawn the counters are theirs.
-        if (task_->targets.colors()) counters = before;
-    }
-    if (!fragments_.empty()) choose_label_fragments();
+    if (!something) return write_labels(false);
+    // Where colours are drawn the counters are theirs.
+    if (!seen) visibility.find({128, 128}, !task_->targets.colors(), visible_);
+    if (!visible_.fragments.empty()) choose_label_fragments();
     if (!task_->targets.colors())
-        for (const std::uint32_t o : ordinal_) pixels_covered += o != 0;
+        for (const std::uint32_t o : visible_.ordinal) pixels_covered += o != 0;
     write_labels(true);
     if (task_->labels.any()) label_surfaces();
 }
@@ -28,17 +23,17 @@ void Tile::choose_label_fragments() {
     make_records(task_->shading_batches.layouts);
     point_pixel_.clear();
     point_ordinal_.clear();
-    for (const Fragment& f : fragments_) {
+    for (const TileFragment& f : visible_.fragments) {
         point_pixel_.push_back(f.pixel);
         point_ordinal_.push_back(f.ordinal);
     }
     shade_list({128, 128});
-    for (std::size_t i = 0; i < fragments_.size(); ++i) {  // the last one that is solid enough stays
+    for (std::size_t i = 0; i < visible_.fragments.size(); ++i) {  // the last one that is solid enough stays
         if (!(point_color_[3][i] >= 0.5f)) continue;
-        ordinal_[fragments_[i].pixel] = fragments_[i].ordinal;
-        depth_[fragments_[i].pixel] = fragments_[i].depth;
+        visible_.ordinal[visible_.fragments[i].pixel] = visible_.fragments[i].ordinal;
+        visible_.depth[visible_.fragments[i].pixel] = visible_.fragments[i].depth;
     }
-    fragments_.clear();
+    visible_.fragments.clear();
 }
 
 // From the tile's first pixel on.
@@ -57,12 +52,12 @@ LabelPlanes Tile::label_planes() const {
 void Tile::write_labels(bool something) const {
     LabelJob job{};
     job.projection = task_->frame.projection;
-    job.x0 = x0_;
-    job.y0 = y0_;
+    job.x0 = area_.x0;
+    job.y0 = area_.y0;
     job.euclidean = task_->targets.euclidean;
-    job.depth = depth_.data();
-    job.ordinal = something ? ordinal_.data() : nullptr;
-    job.triangles = triangles_.data();
+    job.depth = visible_.depth.data();
+    job.ordinal = something ? visible_.ordinal.data() : nullptr;
+    job.triangles = visible_.triangles.data();
     job.instances = task_->frame.instances.data();
     job.planes = label_planes();
     const LabelPlanes& p = job.planes;
@@ -74,8 +69,8 @@ void Tile::clear_surface_labels() const {
     const LabelPlanes p = label_planes();
     const auto stride = static_cast<std::size_t>(task_->frame.projection.width);
     const auto clear = [&](float* plane, std::size_t numbers) {
-        for (std::size_t y = 0; plane && y < static_cast<std::size_t>(height_); ++y)
-            std::fill_n(plane + numbers * stride * y, numbers * static_cast<std::size_t>(width_), 0.0f);
+        for (std::size_t y = 0; plane && y < static_cast<std::size_t>(area_.height); ++y)
+            std::fill_n(plane + numbers * stride * y, numbers * static_cast<std::size_t>(area_.width), 0.0f);
     };
     for (float* plane : {p.normal, p.shading_normal, p.position, p.albedo}) clear(plane, 3);
     clear(p.uv, 2);
@@ -87,8 +82,8 @@ void Tile::label_surfaces() {
     make_records(batches.layouts);
     std::vector<std::uint32_t>& shown = shown_batches_;
     shown.clear();
-    for (const std::uint32_t* o = visible_.data(); *o != 0; ++o) {
-        const std::uint32_t batch = batches.batch_of[triangles_[*o - 1].instance];
+    for (const std::uint32_t* o = list_.data(); *o != 0; ++o) {
+        const std::uint32_t batch = batches.batch_of[visible_.triangles[*o - 1].instance];
         if (shown.empty() || shown.back() != batch) shown.push_back(batch);
     }
     std::sort(shown.begin(), shown.end());
@@ -101,19 +96,19 @@ void Tile::label_surfaces() {
         job.layout = batches.layouts[batch];
         job.records = records_.data();
         job.record_of = record_of_.data();
-        job.x0 = x0_;
-        job.y0 = y0_;
-        job.side = side_;
+        job.x0 = area_.x0;
+        job.y0 = area_.y0;
+        job.side = area_.side;
         job.label_from_camera = task_->targets.label_from_camera;
         job.picture_width = static_cast<std::size_t>(task_->frame.projection.width);
         job.planes = label_planes();
-        job.depth = depth_.data();
-        job.ordinal = ordinal_.data();
+        job.depth = visible_.depth.data();
+        job.ordinal = visible_.ordinal.data();
         if (shown.size() > 1) {
-            std::uint32_t* const own = batch_ordinals_.reserve(ordinal_.size());
-            for (std::size_t i = 0; i < ordinal_.size(); ++i) {
-                const std::uint32_t o = ordinal_[i];
-                own[i] = o != 0 && batches.batch_of[triangles_[o - 1].instance] == batch ? o : 0;
+            std::uint32_t* const own = batch_ordinals_.reserve(visible_.ordinal.size());
+            for (std::size_t i = 0; i < visible_.ordinal.size(); ++i) {
+                const std::uint32_t o = visible_.ordinal[i];
+                own[i] = o != 0 && batches.batch_of[visible_.triangles[o - 1].instance] == batch ? o : 0;
             }
             job.ordinal = own;
         }

@@ -1,5 +1,5 @@
 // Shading kernels, compiled once per instruction set.
-#include "raster/shade_kernel.h"
+#include "tile/shade_kernel.h"
 
 namespace tessera::TESSERA_ISA_NAMESPACE {
 
