@@ -15,10 +15,10 @@ target_include_directories(tessera_flags INTERFACE
   ${PROJECT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/src ${PROJECT_SOURCE_DIR}/include ${PROJECT_BINARY_DIR}/include)
 
 if(TESSERA_SANITIZE)
-  if(NOT TESSERA_SANITIZE MATCHES "^(address|undefined|thread)$")
-    message(FATAL_ERROR "TESSERA_SANITIZE=${TESSERA_SANITIZE}: expected address, undefined or thread")
+  if(NOT TESSERA_SANITIZE MATCHES "^(address|undefined|address,undefined|thread)$")
+    message(FATAL_ERROR "TESSERA_SANITIZE=${TESSERA_SANITIZE}: expected address, undefined, address,undefined or thread")
   endif()
-  add_compile_options(-fsanitize=${TESSERA_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer -g)
+  add_compile_options(-fsanitize=${TESSERA_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer -g1)
   add_link_options(-fsanitize=${TESSERA_SANITIZE})
 endif()
 if(NOT TESSERA_THREADS MATCHES "^(tbb|std)$")

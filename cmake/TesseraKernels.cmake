@@ -2,12 +2,37 @@
 # set's flags, TESSERA_ISA_NAMESPACE (scalar, sse4, avx2, avx512) and TESSERA_SIMD_LANES, and adds the
 # objects to TARGET (a module of tessera_module, or an executable). The flags are what simd/isa.cpp
 # looks for in the processor. Elsewhere than on x86-64 only `scalar` is compiled.
+# TESSERA_ISAS takes some of them, which shortens a build: the others are refused by name when the
+# program runs. `scalar` is always there, as every processor has it.
+set(isas scalar)
 if(CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|AMD64|amd64)$")
-  set(TESSERA_ISAS scalar sse4 avx2 avx512)
-  find_path(TESSERA_HIGHWAY_INCLUDE_DIR hwy/highway.h REQUIRED)
-else()
-  set(TESSERA_ISAS scalar)
+  list(APPEND isas sse4 avx2 avx512)
 endif()
+set(TESSERA_ISAS "${isas}" CACHE STRING "Instruction sets that kernels are compiled for: scalar and any of ${isas}")
+list(REMOVE_DUPLICATES TESSERA_ISAS)
+foreach(isa ${TESSERA_ISAS})
+  if(NOT isa IN_LIST isas)
+    message(FATAL_ERROR "TESSERA_ISAS: \"${isa}\" is no instruction set for this processor; expected some of ${isas}")
+  endif()
+endforeach()
+if(NOT "scalar" IN_LIST TESSERA_ISAS)
+  message(FATAL_ERROR "TESSERA_ISAS=${TESSERA_ISAS}: scalar must be among them")
+endif()
+if(NOT TESSERA_ISAS STREQUAL "scalar")
+  find_path(TESSERA_HIGHWAY_INCLUDE_DIR hwy/highway.h REQUIRED)
+endif()
+
+# For simd/isa.h: TESSERA_BUILT_ISAS is a list of tessera::Isa.
+set(names "")
+foreach(isa ${TESSERA_ISAS})
+  string(SUBSTRING ${isa} 0 1 initial)
+  string(TOUPPER ${initial} initial)
+  string(SUBSTRING ${isa} 1 -1 rest)
+  list(APPEND names tessera::Isa::k${initial}${rest})
+endforeach()
+list(JOIN names "," names)
+target_compile_definitions(tessera_flags INTERFACE TESSERA_BUILT_ISAS=${names})
+
 set(TESSERA_ISA_LANES_scalar 1)
 set(TESSERA_ISA_LANES_sse4 4)
 set(TESSERA_ISA_LANES_avx2 8)
@@ -36,8 +61,10 @@ function(tessera_kernels target)
     # sets share, and the kernels crawl.
     # Without sanitizers: instrumented, inlined vector code takes minutes and gigabytes to compile, and
     # kernels read no files; their tests have guard bytes.
-    target_compile_options(${library} PRIVATE ${TESSERA_ISA_FLAGS_${isa}} $<$<CONFIG:Debug>:-O2>
-      $<$<BOOL:${TESSERA_SANITIZE}>:-fno-sanitize=all>)
+    target_compile_options(${library} PRIVATE ${TESSERA_ISA_FLAGS_${isa}} $<$<CONFIG:Debug>:-O2>)
+    if(TESSERA_SANITIZE)
+      target_compile_options(${library} PRIVATE -O2 -fno-sanitize=all)
+    endif()
     target_compile_definitions(${library} PRIVATE
       TESSERA_ISA_NAMESPACE=${isa} TESSERA_SIMD_LANES=${TESSERA_ISA_LANES_${isa}})
     target_link_libraries(${library} PRIVATE tessera_flags)

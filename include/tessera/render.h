@@ -20,8 +20,10 @@ namespace tessera {
 
 enum class Engine : std::uint8_t {
     kRaster,           // tile rasterizer: SIMD, parallel; the same bits as kReferenceRaster
+    kTrace,            // packet ray tracer: SIMD, parallel; shadows, mirrored and refracted light
+    kHybrid,           // visible surfaces by the rasterizer, light by the ray tracer
     kReferenceRaster,  // z-buffer, scalar, single-threaded: the oracle
-    kReferenceTrace,   // ray caster with hard shadows, scalar, single-threaded
+    kReferenceTrace,   // recursive ray tracer, scalar, single-threaded: the oracle of the other two
 };
 TESSERA_API const char* name(Engine engine);
 
@@ -75,10 +77,14 @@ struct RenderOptions {
     // Uniform ambient radiance; unset: the scene's, else the studio's own, or a twentieth of the exposed
     // white for a scene's lights.
     std::optional<float> ambient;
-    bool shadows = true;               // hard shadows where the engine has them
+    Shadows shadows = Shadows::kAuto;
     int samples = 4;                   // per pixel, 1 .. 256, at fixed positions of 1/256 pixel
     float point_size = 2;              // pixels, diameter of points: discs that face the camera, squares up to 2
     float line_width = 1;              // pixels, along the minor axis of the picture (docs/rasterizer.md)
+    // Of light that is traced: how often it is mirrored or refracted at most (0: never), and the contribution to a
+    // sample below which it is not followed.
+    int max_depth = 8;
+    float min_contribution = 0.002f;
     std::optional<float> exposure_ev;  // radiance * 2^ev; unset: automatic
     ToneMap tone_map = ToneMap::kNeutral;
     PixelFilter filter = PixelFilter::kBox;
@@ -128,6 +134,11 @@ struct RenderStats {
     std::uint64_t fragments_passed = 0;  // samples that passed the depth test (raster), hits (trace)
     std::uint64_t color_hash = 0;        // hash_pixels() of the colour plane, by render() only
     double exposure = 1;                 // factor on radiance
+    // Of traced light: rays by kind (straight: on through blended surfaces); rays that would have gone on but for
+    // max_depth and min_contribution; hierarchies of the scene, those built or refitted for this frame, their memory.
+    std::uint64_t primary_rays = 0, shadow_rays = 0, mirrored_rays = 0, refracted_rays = 0, straight_rays = 0;
+    std::uint64_t ended_by_depth = 0, ended_by_contribution = 0;
+    std::uint64_t hierarchies = 0, hierarchies_built = 0, hierarchies_refitted = 0, hierarchy_bytes = 0;
     std::vector<std::pair<std::string, double>> phases_ms;  // wall time by phase, in order
     double frame_ms = 0, cpu_ms = 0;
 };

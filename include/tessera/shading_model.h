@@ -40,6 +40,10 @@ enum class TextureSlot : std::uint8_t {
 };
 inline constexpr std::size_t kTextureSlots = static_cast<std::size_t>(TextureSlot::kCount);
 
+// Whether lights cast shadows: kAuto, traced by the engines that trace light and none by the rasterizers; kNone; or
+// kTraced, hard ones by rays, which kReferenceRaster has not.
+enum class Shadows : std::uint8_t { kAuto, kNone, kTraced };
+
 enum class Wrap : std::uint8_t { kRepeat, kMirror, kClamp };
 enum class Filter : std::uint8_t { kNearest, kLinear };
 // How a texture is filtered when it shrinks: kNone takes level 0 only.

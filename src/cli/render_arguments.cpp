@@ -117,6 +117,14 @@ void parse_cameras(const RenderArguments& a, RenderJob& job) {
     }
 }
 
+Shadows parse_shadows(const RenderArguments& a) {
+    if (a.no_shadows && !a.shadows.empty() && a.shadows != "none")
+        refuse("--no-shadows", "contradicts --shadows " + a.shadows);
+    if (a.no_shadows) return Shadows::kNone;
+    if (a.shadows.empty()) return Shadows::kAuto;
+    return choose<Shadows>("--shadows", a.shadows, {{"none", Shadows::kNone}, {"traced", Shadows::kTraced}});
+}
+
 void check_outputs(const RenderArguments& a) {
     if (a.output.empty() && a.stats.empty())
         refuse("--output", "say where the picture goes: -o FILE, or -o - for stdout");
@@ -129,11 +137,10 @@ void check_outputs(const RenderArguments& a) {
 }  // namespace
 
 Engine parse_engine(const std::string& text) {
-    for (const char* planned : {"trace", "hybrid"})
-        if (text == planned)
-            refuse("--engine", text + " does not exist yet; there are raster, reference-raster and reference-trace");
     return choose<Engine>("--engine", text,
                           {{"raster", Engine::kRaster},
+                           {"trace", Engine::kTrace},
+                           {"hybrid", Engine::kHybrid},
                            {"reference-raster", Engine::kReferenceRaster},
                            {"reference-trace", Engine::kReferenceTrace}});
 }
@@ -165,7 +172,8 @@ void add_picture_options(CLI::App& app, RenderArguments& a) {
     option("Picture", "-s,--size", a.size, "WxH", "size in pixels (default 1024x768)");
     option("Picture", "--variant", a.variant, "NAME|INDEX", "the scene's set of materials of that name");
     option("Picture", "--engine", a.engine, "NAME",
-           "raster (the default), reference-raster (the same bits, slowly) or reference-trace (hard shadows)");
+           "raster (the default), trace (rays: shadows, mirrors, glass), hybrid (raster for what is seen, rays for its "
+           "light), reference-raster or reference-trace (the same bits, slowly)");
     option("Picture", "--samples", a.samples, "N", "samples per pixel, 1 .. 256 (default 4)");
     option("Picture", "--filter", a.filter, "NAME",
            "box (default: the mean of a pixel's samples), tent, gaussian or mitchell, which weigh its neighbours' too");
@@ -201,7 +209,12 @@ void add_picture_options(CLI::App& app, RenderArguments& a) {
 
     option("Light", "--lighting", a.lighting, "NAME", "auto (default), scene (only its own lights) or studio");
     option("Light", "--ambient", a.ambient, "X", "uniform ambient radiance");
-    app.add_flag("--no-shadows", a.no_shadows, "leave out shadows where the engine has them")->group("Light");
+    option("Light", "--shadows", a.shadows, "KIND", "none, or traced (default but for --engine raster)");
+    app.add_flag("--no-shadows", a.no_shadows, "the same as --shadows none")->group("Light");
+    option("Light", "--max-depth", a.max_depth, "N",
+           "how often traced light is mirrored or refracted at most, 0 .. 64 (default 8)");
+    option("Light", "--min-contribution", a.min_contribution, "X",
+           "part of a sample's light below which it is not followed, 0 .. 1 (default 0.002)");
 
     option("Machine", "--threads", a.threads, "N", "threads to use (default: all this process may)");
     option("Machine", "--isa", a.isa, "NAME", "auto (default), scalar, sse4, avx2 or avx512; the picture is the same");
@@ -292,7 +305,9 @@ RenderJob parse_render_arguments(const RenderArguments& a) {
         choose<Lighting>("--lighting", a.lighting,
                          {{"auto", Lighting::kAuto}, {"scene", Lighting::kScene}, {"studio", Lighting::kStudio}});
     if (!a.ambient.empty()) render.ambient = static_cast<float>(parse_number("--ambient", a.ambient, 0, 1e9));
-    render.shadows = !a.no_shadows;
+    render.shadows = parse_shadows(a);
+    render.max_depth = static_cast<int>(parse_integer("--max-depth", a.max_depth, 0, 64));
+    render.min_contribution = static_cast<float>(parse_number("--min-contribution", a.min_contribution, 0, 1));
 
     if (!a.threads.empty()) render.threads = static_cast<int>(parse_integer("--threads", a.threads, 1, 1024));
     render.isa = parse_isa(a.isa);

@@ -26,7 +26,7 @@ struct RenderArguments {
     std::string time, animation, frames, fps = "24", turntable, variant;
     std::string camera, eye, target, up = "y", fov, intrinsics, poses;
     std::string show, background = "white", exposure = "auto", tone_map = "neutral", encoding = "srgb";
-    std::string lighting = "auto", ambient;
+    std::string lighting = "auto", ambient, shadows, max_depth = "8", min_contribution = "0.002";
     std::string threads, isa = "auto", quality = "92", png_level = "1";
     std::string max_triangles, max_pixels, max_memory, timeout;
     bool no_shadows = false, quiet = false, skip_existing = false;

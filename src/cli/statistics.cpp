@@ -60,6 +60,14 @@ std::string statistics_json(const std::string& scene, const RenderOptions& optio
     json.member("samples_tested", stats.samples_tested).member("fragments_passed", stats.fragments_passed);
     json.member("blocks_drawn", stats.blocks_drawn).member("blocks_hidden", stats.blocks_hidden);
     json.member("pixels_covered", stats.pixels_covered).member("tile_side", stats.tile_side);
+    json.key("rays").begin_object();
+    json.member("primary", stats.primary_rays).member("shadow", stats.shadow_rays);
+    json.member("mirrored", stats.mirrored_rays).member("refracted", stats.refracted_rays);
+    json.member("straight", stats.straight_rays).member("ended_by_depth", stats.ended_by_depth);
+    json.member("ended_by_contribution", stats.ended_by_contribution).end_object();
+    json.key("hierarchies").begin_object();
+    json.member("all", stats.hierarchies).member("built", stats.hierarchies_built);
+    json.member("refitted", stats.hierarchies_refitted).member("bytes", stats.hierarchy_bytes).end_object();
     json.key("phases_ms").begin_object();
     for (const auto& [phase, milliseconds] : stats.phases_ms) json.member(phase, milliseconds);
     json.end_object();

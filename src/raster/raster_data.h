@@ -11,9 +11,6 @@ namespace tessera {
 
 // --- the front end ----------------------------------------------------------------------------
 
-// Besides the out-codes: coordinates beyond any use.
-inline constexpr std::uint32_t kUnusable = 128;
-
 // Transforms `count` vertices: consecutive ones from `first`, or where `indices` is set those.
 struct VertexJob {
     const InstanceView* instance;

@@ -107,6 +107,29 @@ void add_counters(RenderStats& stats, const RasterCounters& counters, bool first
     stats.tile_side = counters.tile_side;
 }
 
+void add_counters(RenderStats& stats, const TraceCounters& counters, bool first) {
+    stats.primary_rays += counters.primary_rays;
+    stats.fragments_passed += counters.hits;
+    if (!first) return;
+    stats.pixels_covered = counters.pixels_covered;
+    stats.tile_side = counters.tile_side;
+}
+
+void add_counters(RenderStats& stats, const LightTracer& tracer) {
+    const TransportCounters c = tracer.counters();
+    stats.shadow_rays = c.shadow_rays;
+    stats.mirrored_rays = c.mirrored_rays;
+    stats.refracted_rays = c.refracted_rays;
+    stats.straight_rays = c.straight_rays;
+    stats.ended_by_depth = c.ended_by_depth;
+    stats.ended_by_contribution = c.ended_by_contribution;
+    const BuildStatistics& b = tracer.build();
+    stats.hierarchies = b.groups;
+    stats.hierarchies_built = b.built;
+    stats.hierarchies_refitted = b.refitted;
+    stats.hierarchy_bytes = b.bytes;
+}
+
 PictureTargets make_planes(const RenderOptions& o, RenderResult& result) {
     PictureTargets targets;
     targets.rgba = make_plane<std::uint8_t>(o.want_color, o, PixelFormat::kRgba8, result.color);

@@ -6,6 +6,7 @@
 #include "reference/engine.h"
 #include "render/filter_pass.h"
 #include "render/options.h"
+#include "trace/engine.h"
 
 #include <functional>
 #include <optional>
@@ -48,6 +49,9 @@ void develop_picture(const float* sums, float weight, const FilmView& film, cons
 // others cull the same triangles again.
 void add_counters(RenderStats& stats, const VisibilityCounters& counters, bool first);
 void add_counters(RenderStats& stats, const RasterCounters& counters, bool first);
+void add_counters(RenderStats& stats, const TraceCounters& counters, bool first);
+// Of traced light and the hierarchies that it took.
+void add_counters(RenderStats& stats, const LightTracer& tracer);
 
 // The planes that the options ask for and those that they are made of, made where `result` does not have them yet; the
 // others are let go.

@@ -51,6 +51,10 @@ const char* name(Engine engine) {
     switch (engine) {
         case Engine::kRaster:
             return "raster";
+        case Engine::kTrace:
+            return "trace";
+        case Engine::kHybrid:
+            return "hybrid";
         case Engine::kReferenceRaster:
             return "reference-raster";
         case Engine::kReferenceTrace:
@@ -79,6 +83,11 @@ void check_options(const RenderOptions& o) {
             if (!(c >= 0.0f && c <= 1.0f)) refuse("background components must be 0 to 1");
     if (o.filter > PixelFilter::kMitchell) refuse("unknown filter");
     check_stage(o);
+    if (o.shadows > Shadows::kTraced) refuse("unknown kind of shadows");
+    if (o.shadows == Shadows::kTraced && o.engine == Engine::kReferenceRaster)
+        refuse("reference-raster traces no shadows");
+    if (o.max_depth < 0 || o.max_depth > 64) refuse("the depth of traced light must be 0 to 64");
+    if (!(o.min_contribution >= 0.0f && o.min_contribution <= 1.0f)) refuse("the least contribution must be 0 to 1");
     resolve_isa(o.isa);
     const auto pixels = static_cast<std::uint64_t>(o.width) * static_cast<std::uint64_t>(o.height);
     if (picture_bytes(o) > o.max_bytes)
@@ -117,6 +126,28 @@ std::vector<SamplePosition> sample_positions(const RenderOptions& options) {
         positions.push_back({s.x, s.y});
     }
     return positions;
+}
+
+bool is_parallel(Engine engine) { return engine < Engine::kReferenceRaster; }
+
+bool traces_shadows(const RenderOptions& o) {
+    if (o.shadows == Shadows::kAuto) return o.engine != Engine::kRaster && o.engine != Engine::kReferenceRaster;
+    return o.shadows == Shadows::kTraced;
+}
+
+bool traces_bounces(const RenderOptions& o) {
+    return o.max_depth > 0 && o.engine != Engine::kRaster && o.engine != Engine::kReferenceRaster;
+}
+
+TransportSettings transport_settings(const RenderOptions& options, const FilmView& film) {
+    TransportSettings settings;
+    settings.shadows = traces_shadows(options);
+    settings.bounces = traces_bounces(options);
+    settings.max_depth = options.max_depth;
+    settings.least = options.min_contribution;
+    // The film lays the background below what is developed: as radiance it is that over the exposure.
+    for (int i = 0; i < 3; ++i) settings.background[i] = film.background[i] * film.background[3] / film.exposure;
+    return settings;
 }
 
 RasterSettings raster_settings(const RenderOptions& options, const FilmView& film, const RunControl& control) {

@@ -6,6 +6,7 @@
 #include "geometry/strokes.h"
 #include "raster/engine.h"
 #include "reference/visibility.h"
+#include "trace/engine.h"
 #include "shading/film.h"
 
 #include <mutex>
@@ -23,6 +24,13 @@ StrokeStyle stroke_style(const RenderOptions& options);
 
 // Where a pixel's samples lie.
 std::vector<SamplePosition> sample_positions(const RenderOptions& options);
+
+// Whether an engine draws tiles on all threads.
+bool is_parallel(Engine engine);
+// Whether rays go towards lights, and along mirrored and refracted directions.
+bool traces_shadows(const RenderOptions& options);
+bool traces_bounces(const RenderOptions& options);
+TransportSettings transport_settings(const RenderOptions& options, const FilmView& film);
 
 // The tile rasterizer's settings for all samples, under `control`.
 RasterSettings raster_settings(const RenderOptions& options, const FilmView& film, const RunControl& control);

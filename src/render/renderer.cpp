@@ -13,6 +13,9 @@
 #include "render/shading_scene.h"
 #include "render/stage_picture.h"
 #include "render/stopwatch.h"
+#include "trace/engine.h"
+
+#include <optional>
 
 namespace tessera {
 
@@ -22,10 +25,10 @@ struct Renderer::Impl {
         : scene(s),
           options(o),
           arena(o.threads),
-          prepared(s, &arena, o.engine == Engine::kRaster ? resolve_isa(o.isa) : Isa::kScalar),
+          prepared(s, &arena, is_parallel(o.engine) ? resolve_isa(o.isa) : Isa::kScalar),
           shading(s, prepared.used_materials(), arena, warnings) {
         const bool wide = o.filter != PixelFilter::kBox && (o.want_color || o.want_linear || o.want_alpha);
-        if (o.engine != Engine::kRaster || !wide) return;
+        if (!is_parallel(o.engine) || !wide) return;
         filter.emplace(o, &arena);
         sample_plane.resize(filter->plane_floats());
     }
@@ -46,6 +49,7 @@ struct Renderer::Impl {
     OtherShot before, after;               // that motion is measured to
     std::vector<std::uint32_t> triangles;  // for motion: 1 + number of the one that each pixel shows
     RasterEngine raster;
+    std::optional<LightTracer> tracer;  // where anything is traced
     // Of filters wider than the pixel: the sums, and the picture of one sample, linear RGBA.
     std::optional<FilterPass> filter;
     std::vector<float> sample_plane;
@@ -74,7 +78,7 @@ void Renderer::Impl::draw(const Shot& now, const Shot& earlier, const Shot& late
     shading.light(scene, frame, options);
     watch.phase("evaluate");
 
-    if (options.engine == Engine::kRaster)
+    if (is_parallel(options.engine))
         draw_tiles(watchdog, watch, result);
     else
         draw_reference(watchdog, watch, result);
@@ -115,7 +119,7 @@ void Renderer::Impl::see_other(const Shot& shot, const Watchdog& watchdog, Other
     other.seen.resize(static_cast<std::size_t>(options.width) * static_cast<std::size_t>(options.height));
     PictureTargets targets;
     targets.labels.triangle = other.seen.data();
-    if (options.engine == Engine::kRaster) {
+    if (is_parallel(options.engine)) {
         raster.draw(other.frame, shading.context(),
                     raster_settings(options, shading.film(options), watchdog.control(0, 0)), targets, arena);
         return;
@@ -124,20 +128,31 @@ void Renderer::Impl::see_other(const Shot& shot, const Watchdog& watchdog, Other
     take_labels(engine, other.frame, watchdog.control(0, 0), targets);
 }
 
-// The tile rasterizer: visibility, shading and film inside each tile. With a filter that is wider than
+// The engines of tiles: visibility, shading and film inside each tile, light by rays where it is traced. With a filter that is wider than
 // the pixel, linear pictures of one sample each, and the film after the last of them.
 void Renderer::Impl::draw_tiles(const Watchdog& watchdog, Stopwatch& watch, RenderResult& result) {
     const PictureTargets targets = make_targets(result);
     RasterSettings settings = raster_settings(options, shading.film(options), watchdog.control(0, 1));
     result.stats.isa = settings.isa;
     result.stats.threads = arena.threads();
+    const bool traced = traces_shadows(options) || traces_bounces(options);
+    if (traced || options.engine == Engine::kTrace) {
+        if (!tracer) tracer.emplace(settings.isa, options.max_bytes);
+        tracer->begin(frame, shading.context(), transport_settings(options, settings.film), arena);
+        if (traced) settings.shaders = &*tracer;
+        watch.phase("build");
+    }
     const auto draw = [&](const PictureTargets& to, bool first) {
-        add_counters(result.stats, raster.draw(frame, shading.context(), settings, to, arena), first);
+        if (options.engine == Engine::kTrace)
+            add_counters(result.stats, tracer->draw(frame, shading.context(), settings, to, arena), first);
+        else
+            add_counters(result.stats, raster.draw(frame, shading.context(), settings, to, arena), first);
         watch.phase("tiles");
     };
     settings.inspection = make_stage_plane(options, result);
     if (!filter) {
         draw(targets, true);
+        if (tracer) add_counters(result.stats, *tracer);
         if (options.show != Stage::kPicture) paint_stage(options.show, result.stats.tile_side, result);
         return;
     }
@@ -156,6 +171,7 @@ void Renderer::Impl::draw_tiles(const Watchdog& watchdog, Stopwatch& watch, Rend
         watch.phase("filter");
     }
     develop_picture(filter->finish(), 1.0f, settings.film, options, &arena, targets);
+    if (tracer) add_counters(result.stats, *tracer);
     result.stats.pixels_covered = filter->pixels_covered();
     watch.phase("film");
 }
@@ -165,7 +181,7 @@ void Renderer::Impl::draw_reference(const Watchdog& watchdog, Stopwatch& watch, 
     const bool tracing = options.engine == Engine::kReferenceTrace;
     if (tracing && !is_square(frame.projection))
         throw Error(ErrorCode::kUsage, "reference-trace needs a picture that is square to the camera's axes");
-    ReferenceEngine engine(frame, shading.context(), tracing, options.shadows);
+    ReferenceEngine engine(frame, shading.context(), tracing, traces_shadows(options));
     const PictureTargets targets = make_targets(result);
     watch.phase("build");
 

@@ -172,6 +172,7 @@ void ShadingScene::light(const Scene& scene, const Frame& frame, const RenderOpt
     context_.materials = materials_.data();
     context_.lights = lights_.data();
     context_.light_count = static_cast<int>(lights_.size());
+    context_.bounces = traces_bounces(options);
     context_.footprint_scale = 1.0f / std::sqrt(static_cast<float>(options.samples));
 
     if (options.exposure_ev)

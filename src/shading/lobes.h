@@ -125,17 +125,22 @@ struct MetallicRoughnessLobe {
         return (diffuse + fresnel * specular) * n_l;
     }
 
-    // Under ambient light the highlight's albedo is Karis' fit to the split-sum integral ("Physically
+    // What the microfacets return of light from everywhere: Karis' fit to the split-sum integral ("Physically
     // Based Shading on Mobile", 2014).
     template <class F>
-    static TESSERA_INLINE Vec3T<F> reflect_ambient(const LobeParameters<F>& p, const AmbientView& ambient) {
+    static TESSERA_INLINE Vec3T<F> highlight_albedo(const LobeParameters<F>& p) {
         const F n_v = saturate(p.n_v);
         const F rx = F(1.0f) - p.roughness, ry = F(0.0425f) - F(0.0275f) * p.roughness;
         const F a004 = min(rx * rx, math::exp2(F(-9.28f) * n_v)) * rx + ry;
         const F scale = F(1.04f) - F(0.572f) * p.roughness - F(1.04f) * a004;
         const F bias = F(0.022f) * p.roughness - F(0.04f) + F(1.04f) * a004;
         const Vec3T<F> fit = p.f0 * scale + Vec3T<F>::splat(max(bias, F(0.0f)) * p.f90);
-        const Vec3T<F> albedo{min(fit.x, F(1.0f)), min(fit.y, F(1.0f)), min(fit.z, F(1.0f))};
+        return {min(fit.x, F(1.0f)), min(fit.y, F(1.0f)), min(fit.z, F(1.0f))};
+    }
+
+    template <class F>
+    static TESSERA_INLINE Vec3T<F> reflect_ambient(const LobeParameters<F>& p, const AmbientView& ambient) {
+        const Vec3T<F> albedo = highlight_albedo(p);
         const Vec3T<F> mirrored = p.normal * (F(2.0f) * p.n_v) - p.view;
         return albedo * ambient_radiance(ambient, mirrored, p.roughness) +
                (Vec3T<F>::splat(F(1.0f)) - albedo) * diffuse_color(p) * ambient_radiance(ambient, p.normal, F(1.0f));

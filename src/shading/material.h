@@ -29,6 +29,12 @@ struct MaterialView {
     float emission[3];                             // strength included
     float ambient[3], diffuse[3], specular[3];     // ka, kd, ks
     float shininess;
+    // Of traced light: kr of the textbooks; the part that enters instead of being scattered, and how it goes on.
+    float mirror[3] = {0, 0, 0}, transmission = 0;
+    bool thin = true;                        // light that enters leaves at once, as through a pane
+    float ior[3] = {1, 1, 1};                // for red, green and blue
+    float absorption[3] = {0, 0, 0};         // per metre within
+    int priority = 0;                        // of overlapping media the highest one fills the space
     TextureInput inputs[kTextureSlots];
 
     TESSERA_INLINE const TextureInput& input(TextureSlot slot) const { return inputs[static_cast<int>(slot)]; }

@@ -13,6 +13,7 @@ struct ShadingContext {
     AmbientView ambient;
     float unlit_scale;      // radiance of an unlit white: the inverse of the exposure
     float footprint_scale;  // footprint of a sample in pixels
+    bool bounces = false;   // mirrored and refracted light is traced
 };
 
 template <class F>
@@ -37,6 +38,13 @@ TESSERA_INLINE ShadingFamily family_of(ShadingModel model) {
             break;
     }
     return ShadingFamily::kMicrofacet;
+}
+
+// What arrives of a light where nothing casts shadows: all of it.
+struct Unshadowed {};
+template <class F>
+TESSERA_INLINE Vec3T<F> operator*(const Vec3T<F>& light, Unshadowed) {
+    return light;
 }
 
 // A batch is what shading takes at a time: kCount points (or vectors of them), of which it reads what it
@@ -100,10 +108,12 @@ TESSERA_INLINE void shade_textbook(const ShadingContext& context, const Material
                        ks = product<F>(m.specular, light.intensity, kInversePi);
         F n_l[kCount], strength[kCount];
         HighlightCosine<F> highlight[kCount];
+        decltype(visible(0, LightSample<F>{}, 0)) arrives[kCount];
         for (int k = 0; k < kCount; ++k) {
             if (!batch.used(k)) continue;
             const LightSample<F> sample = sample_light(light, batch.position(k));
-            strength[k] = sample.strength * visible(i, sample, k);
+            strength[k] = sample.strength;
+            arrives[k] = visible(i, sample, k);
             n_l[k] = dot(batch.normal(k), sample.to_light);
             if (m.model == ShadingModel::kLambert) continue;
             const Vec3T<F> view = batch.view(k);
@@ -114,7 +124,7 @@ TESSERA_INLINE void shade_textbook(const ShadingContext& context, const Material
             const F zero(0.0f);
             Vec3T<F> diffuse = kd * (max(n_l[k], zero) * strength[k]);
             if constexpr (kColored) diffuse = diffuse * color[k];
-            Vec3T<F> sum = out[k].radiance + diffuse;
+            Vec3T<F> sum = out[k].radiance + diffuse * arrives[k];
             if (m.model != ShadingModel::kLambert) {
                 const F base = cosine(m.model, highlight[k]);
                 Vec3T<F> mirrored = ks;
@@ -129,7 +139,7 @@ TESSERA_INLINE void shade_textbook(const ShadingContext& context, const Material
                 } else {
                     power = power_cosine(base, exponent);
                 }
-                sum = sum + mirrored * (select(n_l[k] > zero, power, zero) * strength[k]);
+                sum = sum + mirrored * (select(n_l[k] > zero, power, zero) * strength[k]) * arrives[k];
             }
             out[k].radiance = sum;
         }
@@ -143,7 +153,7 @@ TESSERA_INLINE ShadedPoint<F> shade_microfacet(const ShadingContext& context, co
     Vec3T<F> radiance = p.emission + MetallicRoughnessLobe::reflect_ambient(p, context.ambient) * p.occlusion;
     for (int i = 0; i < context.light_count; ++i) {
         const LightSample<F> light = sample_light(context.lights[i], s.position);
-        const F arrives = visible(i, light, k);
+        const auto arrives = visible(i, light, k);
         const Incidence<F> incidence{light.to_light, dot(p.normal, light.to_light)};
         radiance = radiance + MetallicRoughnessLobe::reflect(p, incidence) * light.irradiance * arrives;
     }
@@ -158,7 +168,7 @@ TESSERA_INLINE ShadedPoint<F> shade_unlit(const ShadingContext& context, const M
 }
 
 // For a material of the given family. `visible(light, sample, point)` gives the part of a light that arrives
-// at a point of the batch, 0 .. 1 (shadows). Lights are summed in their order.
+// at a point of the batch, Unshadowed or a colour (shadows). Lights are summed in their order.
 template <ShadingFamily kFamily, int kUvSets, class F, class Batch, class Visible>
 TESSERA_INLINE void shade_as(const ShadingContext& context, const MaterialView& m, const Batch& batch,
                              Visible&& visible, ShadedPoint<F>* out) {

@@ -27,7 +27,7 @@ void Tile::choose_label_fragments() {
         point_pixel_.push_back(f.pixel);
         point_ordinal_.push_back(f.ordinal);
     }
-    shade_list({128, 128});
+    shade_list({128, 128}, nullptr);
     for (std::size_t i = 0; i < visible_.fragments.size(); ++i) {  // the last one that is solid enough stays
         if (!(point_color_[3][i] >= 0.5f)) continue;
         visible_.ordinal[visible_.fragments[i].pixel] = visible_.fragments[i].ordinal;

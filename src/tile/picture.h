@@ -1,7 +1,7 @@
 // What is drawn and how: planes to write, samples, film. Shared by the engines that draw tiles.
 #pragma once
 
-#include "tile/tile_data.h"
+#include "tile/point_shader.h"
 
 #include <tessera/isa.h>
 
@@ -35,6 +35,7 @@ struct PictureSettings {
     int tile_side = 0;                       // 32, 64, 128 or 0: chosen by the engine
     std::size_t max_fragments;               // transparent fragments in flight, per tile and sample
     std::function<void(double)> checkpoint;  // from any task; throws to stop
+    PointShaders* shaders = nullptr;         // of traced light; null: of the lights alone
 };
 
 }  // namespace tessera

@@ -39,7 +39,7 @@ __attribute__((noinline)) void shade_surfaces(const ShadeConstants& constants, P
     const MaterialView material = constants.material;
     const PointBatch<Layout> batch{Layout::layout(constants.job), constants.rays, points};
     shade_as<kFamily, kUvSets>(
-        context, material, batch, [](int, const LightSample<Float>&, int) { return Float(1.0f); }, points.shaded);
+        context, material, batch, [](int, const LightSample<Float>&, int) { return Unshadowed{}; }, points.shaded);
 }
 
 // The stages for a job: those that know its layout and family beforehand have less code.

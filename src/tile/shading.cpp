@@ -9,6 +9,10 @@ namespace tessera {
 std::uint32_t Tile::list_visible() {
     std::uint32_t* const list = list_.reserve(visible_.triangle_count + 1);
     std::uint32_t count = 0;
+    if (visible_.triangle_count == 0) {
+        list[0] = 0;
+        return 0;
+    }
     // Few triangles of one instance: to prepare them all costs less than to look for those that are seen.
     const auto pixels = static_cast<std::uint32_t>(area_.side * area_.side);
     const TileTriangle* const triangles = visible_.triangles.data();
@@ -96,7 +100,7 @@ void Tile::shade_opaque(SamplePosition offset, bool first, Planes& planes) {
         batch = task_->shading_batches.batch_of[instance];
         any = true;
     }
-    if (one && any) {
+    if (one && any && !shader_) {
         const bool at_once =
             task_->settings.samples.size() == 1 && visible_.fragments.empty() && !task_->targets.linear;
         const DevelopJob film = develop_job();
@@ -126,17 +130,36 @@ void Tile::shade_opaque(SamplePosition offset, bool first, Planes& planes) {
             point_pixel_.push_back(pixel);
             point_ordinal_.push_back(visible_.ordinal[pixel]);
         }
-    shade_list(offset);
+    shade_list(offset, shader_.get());
     for (std::size_t i = 0; i < point_pixel_.size(); ++i) {
         const std::uint32_t pixel = point_pixel_[i];
-        for (std::size_t c = 0; c < 3; ++c) planes[c][pixel] += point_color_[c][i];
-        planes[3][pixel] += 1.0f;
+        for (std::size_t c = 0; c < 4; ++c) planes[c][pixel] += point_color_[c][i];
         hit_[pixel / kBlockPixels] |= std::uint64_t{1} << pixel % kBlockPixels;
     }
 }
 
+// The same with traced light.
+void Tile::shade_list_traced(SamplePosition offset, PointShader& shader) {
+    const std::size_t count = point_ordinal_.size();
+    for (std::vector<float>& plane : point_color_) plane.resize(count);
+    if (count == 0) return;
+    batch_x_.resize(count + kMaxLanes);
+    batch_y_.resize(count + kMaxLanes);
+    for (std::size_t i = 0; i < count; ++i) {
+        const TilePixel p(point_pixel_[i], area_.side);
+        batch_x_[i] = 256 * (area_.x0 + p.x) + offset.x;
+        batch_y_[i] = 256 * (area_.y0 + p.y) + offset.y;
+    }
+    const SampleList samples{
+        batch_x_.data(),           batch_y_.data(),         point_ordinal_.data(), static_cast<std::uint32_t>(count),
+        visible_.triangles.data(), visible_.triangle_count, records_.data(),       record_of_.data()};
+    shader.shade(*task_, samples,
+                 {point_color_[0].data(), point_color_[1].data(), point_color_[2].data(), point_color_[3].data()});
+}
+
 // Shades point_ordinal_ at point_pixel_ into point_color_, in batches of one material and layout.
-void Tile::shade_list(SamplePosition offset) {
+void Tile::shade_list(SamplePosition offset, PointShader* shader) {
+    if (shader) return shade_list_traced(offset, *shader);
     const std::size_t count = point_ordinal_.size();
     for (std::vector<float>& plane : point_color_) plane.resize(count);
     const auto batch = [&](std::uint32_t point) {
@@ -186,7 +209,7 @@ void Tile::compose_fragments(SamplePosition offset) {
         point_pixel_.push_back(f.pixel);
         point_ordinal_.push_back(f.ordinal);
     }
-    shade_list(offset);
+    shade_list(offset, shader_.get());
     for (std::size_t i = 0; i < point_pixel_.size(); ++i) {
         const std::uint32_t pixel = point_pixel_[i];
         const float a = point_color_[3][i];

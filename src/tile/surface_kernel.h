@@ -4,6 +4,7 @@
 
 #include "simd/records.h"
 #include "tile/pixel_kernel.h"
+#include "tile/transformed_vertex.h"
 
 namespace tessera::TESSERA_ISA_NAMESPACE {
 
@@ -35,7 +36,12 @@ struct LaneVertices {
             for (const auto& lanes : in_mesh)
                 for (std::uint32_t lane = 0; lane < kWidth; lane += 2)
                     __builtin_prefetch(normals + 3 * std::size_t{lanes[lane]});
-        if (vertices.corners == mesh.triangles) {
+        if (!vertices.corners) {
+            if (!normals)
+                for (const auto& lanes : in_mesh)
+                    for (std::uint32_t lane = 0; lane < kWidth; lane += 2)
+                        __builtin_prefetch(mesh.positions + 3 * std::size_t{lanes[lane]});
+        } else if (vertices.corners == mesh.triangles) {
             for (const auto& lanes : in_mesh)
                 for (std::uint32_t lane = 0; lane < kWidth; lane += 2)
                     __builtin_prefetch(vertices.vertices + lanes[lane]);
@@ -128,7 +134,8 @@ template <class Kind>
 inline void make_surfaces_as(const SurfaceJob& job) {
     constexpr std::uint32_t kWidth = kLanes<Float>;
     const InstanceView& instance = job.source->instances[job.instance];
-    const InstanceVertices& vertices = job.source->vertices[job.instance];
+    const InstanceVertices vertices =
+        job.source->vertices ? job.source->vertices[job.instance] : InstanceVertices{nullptr, nullptr};
     const ProjectionView& picture = job.source->projection;
     const SurfaceLayout& layout = Kind::layout(job);
     const int floats = surface_floats(layout);
@@ -143,7 +150,8 @@ inline void make_surfaces_as(const SurfaceJob& job) {
         next = swapped;
         if (t + kWidth < job.count) next->find(job, instance.mesh, vertices, arrays.normals.base, t + kWidth);
         const LaneVertices& lanes = *now;
-        const auto& places = vertices.corners == instance.mesh.triangles ? lanes.in_mesh : lanes.by_corner;
+        const auto& places =
+            !vertices.corners || vertices.corners == instance.mesh.triangles ? lanes.in_mesh : lanes.by_corner;
         Corner<Float> corners[3];
         PictureVertex<Float> p[3];
         Float inverse_w[3];
@@ -151,8 +159,16 @@ inline void make_surfaces_as(const SurfaceJob& job) {
         TESSERA_UNROLL(3)
         for (int k = 0; k < 3; ++k) {
             Float unused;
-            load_records([&](int lane) { return vertices.vertices[places[k][lane]].numbers; }, p[k].x, p[k].y, unused,
-                         inverse_w[k]);
+            if (vertices.corners) {
+                load_records([&](int lane) { return vertices.vertices[places[k][lane]].numbers; }, p[k].x, p[k].y,
+                             unused, inverse_w[k]);
+            } else {
+                Vec3T<Float> at;
+                arrays.load_position(lanes.in_mesh[k], at);
+                Float numbers[4];
+                transform_vertex(to_clip(instance.object_to_clip, at), picture.width, picture.height, numbers);
+                p[k].x = numbers[0], p[k].y = numbers[1], inverse_w[k] = numbers[3];
+            }
             p[k].snapped_x = nearest_int(p[k].x);
             p[k].snapped_y = nearest_int(p[k].y);
             special |= inverse_w[k] == Float(0.0f);

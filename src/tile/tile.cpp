@@ -72,12 +72,14 @@ void Tile::draw(const TileTask& task, int index, TileVisibility& visibility) {
             std::fill(hit_.begin(), hit_.end(), 0);
             developed_ = false;
             bool first = true;
+            if (task.settings.shaders) shader_ = task.settings.shaders->take();
             for (const SamplePosition& offset : task.settings.samples) {
                 visibility.find(offset, true, visible_);
                 take_sample(offset, first);
                 visibility.sample_shaded(visible_, seen_count_);
                 first = false;
             }
+            if (shader_) task.settings.shaders->give(std::move(shader_));
             finish_colors();
             const SamplePosition only = task.settings.samples[0];
             centre_seen = task.settings.samples.size() == 1 && only.x == 128 && only.y == 128;

@@ -59,7 +59,8 @@ class Tile {
     void make_records(const std::vector<SurfaceLayout>& layouts);
     void take_sample(SamplePosition offset, bool first);
     void shade_opaque(SamplePosition offset, bool first, Planes& planes);
-    void shade_list(SamplePosition offset);
+    void shade_list(SamplePosition offset, PointShader* shader);
+    void shade_list_traced(SamplePosition offset, PointShader& shader);
     void compose_fragments(SamplePosition offset);
     void label(bool something, bool seen, TileVisibility& visibility);
     void choose_label_fragments();
@@ -75,6 +76,7 @@ class Tile {
     ShadeJob shade_job(std::uint32_t instance) const;
 
     const TileTask* task_ = nullptr;
+    std::unique_ptr<PointShader> shader_;  // while light is traced
     TileArea area_{};
     std::uint32_t seen_count_ = 0;  // triangles with a record
     bool developed_ = false;        // the colours are in the picture already

@@ -26,6 +26,9 @@ inline constexpr int kMaxLanes = 16;
 struct TransformedVertex {
     float numbers[4];
 };
+// Besides the out-codes: coordinates beyond any use.
+inline constexpr std::uint32_t kUnusable = 128;
+
 // The vertices of an instance, for as long as the frame is drawn.
 struct InstanceVertices {
     const TransformedVertex* vertices;
@@ -40,7 +43,7 @@ struct TileTriangle {
 // What kernels need to make surface records and shade them.
 struct SurfaceSource {
     const InstanceView* instances;
-    const InstanceVertices* vertices;  // by instance
+    const InstanceVertices* vertices;  // by instance; null: transformed where they are needed
     const ShadingContext* shading;
     ProjectionView projection;
     // The scalar path, for triangles that are clipped.

@@ -64,10 +64,11 @@ class CliMalformed : public CliTest {
 
     // The corpus's own bounds; an instrumented build is slower and larger.
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-    static constexpr double kSeconds = 60, kMegabytes = 4096;
+    static constexpr bool kInstrumented = true;
 #else
-    static constexpr double kSeconds = 5, kMegabytes = 1024;
+    const bool kInstrumented = kInstrumentedCommand != nullptr;
 #endif
+    const double kSeconds = kInstrumented ? 60 : 5, kMegabytes = kInstrumented ? 4096 : 1024;
 };
 
 TEST_F(CliMalformed, Scenes) {

@@ -23,11 +23,13 @@
 #include <string>
 #include <vector>
 
-#if defined(TESSERA_COMMAND)
-inline constexpr const char* kCommand = TESSERA_COMMAND;
-#else
-inline constexpr const char* kCommand = "";
+#if !defined(TESSERA_COMMAND)
+#define TESSERA_COMMAND ""
 #endif
+// The command of this build, or one that is built with sanitizers, so that those builds need no copy of these tests:
+// TESSERA_INSTRUMENTED_COMMAND names it.
+inline const char* const kInstrumentedCommand = std::getenv("TESSERA_INSTRUMENTED_COMMAND");
+inline const char* const kCommand = kInstrumentedCommand != nullptr ? kInstrumentedCommand : TESSERA_COMMAND;
 
 struct Outcome {
     int code = -1, signal = 0;

@@ -84,7 +84,7 @@ struct SkinResult {
 
 class SkinKernelTest : public testing::TestWithParam<Isa> {
     void SetUp() override {
-        if (!isa_supported(GetParam())) GTEST_SKIP() << "this processor lacks " << name(GetParam());
+        if (!isa_supported(GetParam())) GTEST_SKIP() << name(GetParam()) << " is not supported here";
     }
 };
 

@@ -26,7 +26,7 @@ struct Kernels : RasterKernels, TileKernels {
 class KernelTest : public testing::TestWithParam<Isa> {
   protected:
     void SetUp() override {
-        if (!isa_supported(GetParam())) GTEST_SKIP() << "this processor lacks " << name(GetParam());
+        if (!isa_supported(GetParam())) GTEST_SKIP() << name(GetParam()) << " is not supported here";
     }
     Kernels kernels() const { return Kernels(GetParam()); }
     static Kernels scalar() { return Kernels(Isa::kScalar); }

@@ -191,7 +191,7 @@ TEST(Render, RAY3_HardShadowsFallWhereTheLightIsBlocked) {
     o.engine = Engine::kReferenceTrace;
     o.ambient = 0.0f;
     const RenderResult shadowed = render(scene, o);
-    o.shadows = false;
+    o.shadows = Shadows::kNone;
     const RenderResult open = render(scene, o);
     for (int y = 0; y < 64; ++y)
         for (int x = 0; x < 64; ++x) {
@@ -215,7 +215,7 @@ TEST(Render, RAY3_ConvexBodiesDoNotShadowTheirLitSide) {
         o.ambient = 0.0f;
         o.engine = Engine::kReferenceTrace;
         const RenderResult shadowed = render(scene, o);
-        o.shadows = false;
+        o.shadows = Shadows::kNone;
         const RenderResult open = render(scene, o);
         int darkened = 0, lit = 0;
         for (int y = 0; y < 120; ++y)
@@ -247,7 +247,7 @@ TEST(Render, BEY1_EnginesGiveEqualColoursWhereTheySeeTheSameTriangle) {
     Scene scene = make_scene(wl::terrain(40));
     RenderOptions o = small(160, 90);
     o.view = look({0, 0.9f, 1.3f}, {0, -0.15f, 0});
-    o.shadows = false;
+    o.shadows = Shadows::kNone;
     o.want_primitive = true;
     const RenderResult a = render(scene, o);
     o.engine = Engine::kReferenceTrace;

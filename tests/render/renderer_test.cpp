@@ -163,7 +163,7 @@ TEST(HostCamera, GivesThePictureOfTheCameraItDescribes) {
     const Scene scene = make_scene(wl::terrain(60));
     for (const Engine engine : kEngines) {
         RenderOptions o = all_planes(engine);
-        o.shadows = false;
+        o.shadows = Shadows::kNone;
         o.view = look({0, 0.9f, 1.3f}, {0, -0.15f, 0});
         const RenderResult own = render(scene, o);
         o.view = matrices(wl::terrain_camera(96, 64));
@@ -193,7 +193,7 @@ TEST(HostCamera, ShiftedLensesShowTheRayCasterTheSame) {
     const RenderResult raster = render(scene, o);
     EXPECT_GT(raster.stats.pixels_covered, 1000u);
     o.engine = Engine::kReferenceTrace;
-    o.shadows = false;
+    o.shadows = Shadows::kNone;
     const RenderResult traced = render(scene, o);
     int other = 0;
     for (std::size_t i = 0; i < 96 * 64; ++i)

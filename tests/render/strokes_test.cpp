@@ -92,7 +92,7 @@ TEST(Strokes, WithNormalsTheyAreLit) {
         add_light(scene, light, {0, 0, 0});
         RenderOptions o = options(engine);
         o.ambient = 0.0f;
-        o.shadows = false;
+        o.shadows = Shadows::kNone;
         const RenderResult r = render(with_camera(scene), o);
         EXPECT_NEAR(linear_at(r, 32, 16).x, 3 * 0.8 / 3.14159265, 1e-5);
         // Half-way, the interpolated normal made unit again.

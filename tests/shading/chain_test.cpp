@@ -142,7 +142,7 @@ class World {
 class ChainTest : public testing::TestWithParam<Isa> {
   protected:
     void SetUp() override {
-        if (!isa_supported(GetParam())) GTEST_SKIP() << "this processor lacks " << name(GetParam());
+        if (!isa_supported(GetParam())) GTEST_SKIP() << name(GetParam()) << " is not supported here";
     }
 
     // The first difference of each stage is reported.

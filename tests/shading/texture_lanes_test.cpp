@@ -61,7 +61,7 @@ std::vector<float> make_points(test::Random& random, Points kind, int width, int
 class TextureLanesTest : public testing::TestWithParam<Isa> {
   protected:
     void SetUp() override {
-        if (!isa_supported(GetParam())) GTEST_SKIP() << "this processor lacks " << name(GetParam());
+        if (!isa_supported(GetParam())) GTEST_SKIP() << name(GetParam()) << " is not supported here";
     }
 };
 

@@ -2,8 +2,10 @@ tessera_kernels(${target} ${CMAKE_CURRENT_SOURCE_DIR}/simd/operations.simd.cpp
   ${CMAKE_CURRENT_SOURCE_DIR}/simd/record_kernels.simd.cpp ${CMAKE_CURRENT_SOURCE_DIR}/simd/texel_kernels.simd.cpp)
 
 # Sanitizers add weak symbols of their own.
-if(NOT TESSERA_SANITIZE AND NOT TESSERA_ISAS STREQUAL "scalar")
+if(NOT TESSERA_SANITIZE)
   cmake_language(DEFER CALL tessera_add_kernel_symbol_tests)
+endif()
+if(NOT TESSERA_SANITIZE AND "avx2" IN_LIST TESSERA_ISAS)
   add_library(tessera_leaking_avx2 OBJECT ${CMAKE_CURRENT_SOURCE_DIR}/simd/leaking.cpp)
   target_compile_options(tessera_leaking_avx2 PRIVATE ${TESSERA_ISA_FLAGS_avx2})
   target_link_libraries(tessera_leaking_avx2 PRIVATE tessera_flags)

@@ -17,6 +17,7 @@ namespace tessera {
 namespace {
 
 constexpr Isa kIsas[] = {Isa::kScalar, Isa::kSse4, Isa::kAvx2, Isa::kAvx512};
+constexpr IsaBits kAllIsas = isa_bits(Isa::kScalar, Isa::kSse4, Isa::kAvx2, Isa::kAvx512);
 
 // Sets TESSERA_ISA (or removes it) for a scope.
 class Environment {
@@ -108,16 +109,28 @@ TEST(Isa, RegistersThatTheSystemDoesNotSaveAreNotUsed) {
 }
 
 TEST(Isa, AMissingOneIsRefusedByName) {
-    EXPECT_NO_THROW(require_isa(Isa::kAvx2, kHaswell));
-    EXPECT_EQ(usage_error([] { require_isa(Isa::kAvx512, kHaswell); }),
+    EXPECT_NO_THROW(require_isa(Isa::kAvx2, kHaswell, kAllIsas));
+    EXPECT_EQ(usage_error([] { require_isa(Isa::kAvx512, kHaswell, kAllIsas); }),
               "this processor lacks the instruction set avx512; it has scalar, sse4, avx2");
-    EXPECT_EQ(usage_error([] { require_isa(Isa::kSse4, {}); }),
+    EXPECT_EQ(usage_error([] { require_isa(Isa::kSse4, {}, kAllIsas); }),
               "this processor lacks the instruction set sse4; it has scalar");
     for (const Isa isa : kIsas) {
         if (isa_supported(isa)) continue;
         EXPECT_NE(usage_error([&] { parse_isa(name(isa)); }).find(name(isa)), std::string::npos);
         EXPECT_NE(usage_error([&] { resolve_isa(isa); }).find(name(isa)), std::string::npos);
     }
+}
+
+TEST(Isa, OneThatIsNotBuiltIsRefusedByName) {
+    constexpr IsaBits kTwo = isa_bits(Isa::kScalar, Isa::kSse4);
+    EXPECT_NO_THROW(require_isa(Isa::kSse4, kSkylakeServer, kTwo));
+    EXPECT_EQ(usage_error([] { require_isa(Isa::kAvx2, kSkylakeServer, kTwo); }),
+              "this build has no kernels for the instruction set avx2; it has scalar, sse4");
+    EXPECT_EQ(usage_error([] { require_isa(Isa::kAvx512, {}, kTwo); }),
+              "this build has no kernels for the instruction set avx512; it has scalar");
+    EXPECT_TRUE(isa_built(Isa::kAuto) && isa_built(Isa::kScalar));
+    for (const Isa isa : kIsas)
+        EXPECT_EQ(isa_supported(isa), isa_built(isa) && isa_supported(isa, read_cpu_features()));
 }
 
 TEST(Isa, AutomaticIsTheBestOne) {

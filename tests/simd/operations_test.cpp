@@ -35,7 +35,7 @@ std::vector<std::uint32_t> run(const Operation& operation, const Inputs& in, std
 class OperationsTest : public testing::TestWithParam<Isa> {
   protected:
     void SetUp() override {
-        if (!isa_supported(GetParam())) GTEST_SKIP() << "this processor lacks " << name(GetParam());
+        if (!isa_supported(GetParam())) GTEST_SKIP() << name(GetParam()) << " is not supported here";
     }
     const OperationTable& table() const { return operation_table(GetParam()); }
     const OperationTable& scalar() const { return operation_table(Isa::kScalar); }

@@ -24,7 +24,7 @@ using test::GuardedArray;
 class RecordsTest : public testing::TestWithParam<Isa> {
   protected:
     void SetUp() override {
-        if (!isa_supported(GetParam())) GTEST_SKIP() << "this processor lacks " << name(GetParam());
+        if (!isa_supported(GetParam())) GTEST_SKIP() << name(GetParam()) << " is not supported here";
     }
     const RecordTable& table() const { return record_table(GetParam()); }
     std::uint32_t lanes() const { return static_cast<std::uint32_t>(table().lanes); }

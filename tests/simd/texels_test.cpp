@@ -62,7 +62,7 @@ class TexelsTest : public testing::TestWithParam<Isa> {
     };
 
     void SetUp() override {
-        if (!isa_supported(GetParam())) GTEST_SKIP() << "this processor lacks " << name(GetParam());
+        if (!isa_supported(GetParam())) GTEST_SKIP() << name(GetParam()) << " is not supported here";
     }
     const TexelTable& table() const { return texel_table(GetParam()); }
     int lanes() const { return table().lanes; }

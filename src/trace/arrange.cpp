@@ -1,0 +1,86 @@
+// Points in the order of shading: those of one material and layout together, each batch from a boundary of vectors on.
+#include "tile/tile.h"
+#include "trace/waves.h"
+
+#include <algorithm>
+
+namespace tessera {
+
+// The planes of all triangles that the samples show.
+void WaveShader::find_planes(const TileTask& task, const SampleList& samples) {
+    float* const planes = planes_.reserve(4 * (std::size_t{samples.triangle_count} + kMaxLanes));
+    for (std::uint32_t first = 0; first < samples.triangle_count;) {
+        const std::uint32_t instance = samples.triangles[first].instance;
+        plane_triangles_.clear();
+        std::uint32_t end = first;
+        for (; end < samples.triangle_count && samples.triangles[end].instance == instance; ++end)
+            plane_triangles_.push_back(samples.triangles[end].triangle);
+        FlatPlanesJob job{};
+        job.instance = &task.frame.instances[instance];
+        job.triangles = plane_triangles_.data();
+        job.count = end - first;
+        job.planes = planes + 4 * std::size_t{first};
+        scene_->kernels->flat_planes(job);
+        first = end;
+    }
+}
+
+// A counting sort of the rays that hit something by instance; instances in the order of their batches.
+void WaveShader::arrange(const TileTask& task, Wave& wave) {
+    constexpr std::uint32_t kUnknown = 0xffffffffu;
+    const std::vector<std::uint32_t>& batch_of = task.shading_batches.batch_of;
+    slot_of_instance_.resize(batch_of.size(), kUnknown);
+    instances_.clear();
+    counts_.clear();
+    for (std::uint32_t r = 0; r < wave.ray_count; ++r) {
+        const std::uint32_t i = wave.instance[r];
+        if (i == kNoHit) continue;
+        if (slot_of_instance_[i] == kUnknown) {
+            slot_of_instance_[i] = static_cast<std::uint32_t>(instances_.size());
+            instances_.push_back(i);
+            counts_.push_back(0);
+        }
+        ++counts_[slot_of_instance_[i]];
+    }
+    wave.batches.clear();
+    wave.runs.clear();
+    std::uint32_t at = 0;
+    if (instances_.size() > 1) {
+        std::sort(instances_.begin(), instances_.end(), [&](std::uint32_t a, std::uint32_t b) {
+            return batch_of[a] != batch_of[b] ? batch_of[a] < batch_of[b] : a < b;
+        });
+    }
+    const auto pad = [&at] { at = (at + kMaxLanes - 1) / kMaxLanes * kMaxLanes; };
+    for (const std::uint32_t i : instances_) {
+        const std::uint32_t count = counts_[slot_of_instance_[i]];
+        if (wave.batches.empty() || batch_of[wave.batches.back().instance] != batch_of[i]) {
+            pad();
+            wave.batches.push_back({i, at, 0});
+        }
+        wave.runs.push_back({i, at, count});
+        wave.batches.back().count += count;
+        at += count;
+    }
+    pad();
+    wave.point_count = at;
+    wave.reserve_points(at);
+    for (const InstanceRun& run : wave.runs) counts_[slot_of_instance_[run.instance]] = run.first;
+    for (std::uint32_t r = 0; r < wave.ray_count; ++r) {
+        const std::uint32_t i = wave.instance[r];
+        if (i == kNoHit) continue;
+        const std::uint32_t to = counts_[slot_of_instance_[i]]++;
+        wave.ray[to] = r;
+        wave.hit_triangle[to] = wave.triangle[r];
+        wave.used[to] = ~0u;
+    }
+    // What pads a batch repeats its last point, and counts for nothing.
+    for (const PointBatch& b : wave.batches)
+        for (std::uint32_t p = b.first + b.count; p % kMaxLanes != 0; ++p) {
+            wave.ray[p] = wave.ray[p - 1];
+            wave.hit_triangle[p] = wave.hit_triangle[p - 1];
+            wave.used[p] = 0;
+        }
+    for (const std::uint32_t i : instances_) slot_of_instance_[i] = kUnknown;
+}
+
+}  // namespace tessera

@@ -1,0 +1,87 @@
+// What arrives of every light at the points of a wave: rays towards it, and surfaces that let a part of it through.
+#include "trace/waves.h"
+
+#include <algorithm>
+
+namespace tessera {
+
+void WaveShader::find_light(Wave& wave) {
+    const bool colored = scene_->shadows && scene_->scene->has_sheer();
+    arrival_.channels = colored ? 3 : 1;
+    arrival_.stride = wave.point_count + kMaxLanes;
+    const auto arrays = static_cast<std::size_t>(scene_->shading->light_count * arrival_.channels);
+    float* const arrives = arrival_memory_.reserve(arrays * arrival_.stride);
+    arrival_.arrives = arrives;
+    std::fill_n(arrives, arrays * arrival_.stride, scene_->shadows ? 0.0f : 1.0f);
+    if (!scene_->shadows) return;
+
+    shadow_rays_.stride = wave.point_count + kMaxLanes;
+    shadow_rays_.base = shadow_memory_.reserve(6 * shadow_rays_.stride);
+    ShadowRaysJob job{};
+    job.shading = scene_->shading;
+    job.points = wave.points;
+    job.used = wave.used.data();
+    job.count = wave.point_count;
+    job.rays = shadow_rays_;
+    job.t_far = shadow_far_.reserve(shadow_rays_.stride);
+    job.point = shadow_point_.reserve(shadow_rays_.stride);
+    for (int light = 0; light < scene_->shading->light_count; ++light) {
+        job.light = light;
+        scene_->kernels->shadow_rays(job);
+        counters.shadow_rays += job.made;
+        for (std::uint32_t first = 0; first < job.made; first += kPacketWidth) {
+            RayPacket<kPacketWidth> packet;
+            scene_->kernels->pack({shadow_rays_, scene_->scene->trace_from_camera(), first, 0.0f, &packet});
+            alignas(64) int valid[kPacketWidth];
+            for (std::uint32_t lane = 0; lane < kPacketWidth; ++lane) {
+                valid[lane] = first + lane < job.made ? -1 : 0;
+                packet.t_far[lane] = shadow_far_[first + lane];
+                packet.mask[lane] = kMeetsSolid;
+            }
+            scene_->scene->occluded(valid, packet, true);
+            float* const arrived = arrives + static_cast<std::size_t>(light * arrival_.channels) * arrival_.stride;
+            if (colored) attenuate(packet, valid, first, arrived, wave);
+            for (std::uint32_t lane = 0; lane < kPacketWidth && first + lane < job.made; ++lane)
+                if (!colored) arrived[shadow_point_[first + lane]] = packet.t_far[lane] < 0.0f ? 0.0f : 1.0f;
+        }
+    }
+}
+
+// What the sheer surfaces on the way leave of the light, of every ray that nothing solid stops.
+void WaveShader::attenuate(RayPacket<kPacketWidth>& packet, const int* valid, std::uint32_t first, float* arrived,
+                           const Wave& wave) {
+    alignas(64) int free[kPacketWidth];
+    bool any = false;
+    float left[kPacketWidth][3];
+    for (std::uint32_t lane = 0; lane < kPacketWidth; ++lane) {
+        free[lane] = valid[lane] && !(packet.t_far[lane] < 0.0f) ? -1 : 0;
+        any |= free[lane] != 0;
+        packet.mask[lane] = kMeetsSheer;
+        for (float& channel : left[lane]) channel = free[lane] ? 1.0f : 0.0f;
+    }
+    sheer_.clear();
+    if (any) scene_->scene->find_sheer(free, packet, sheer_);
+    // In an order of their own: products of many factors depend on it. Each once.
+    std::sort(sheer_.begin(), sheer_.end(), [](const SheerHit& a, const SheerHit& b) {
+        if (a.lane != b.lane) return a.lane < b.lane;
+        return a.instance != b.instance ? a.instance < b.instance : a.triangle < b.triangle;
+    });
+    for (std::size_t i = 0; i < sheer_.size(); ++i) {
+        const SheerHit& hit = sheer_[i];
+        if (i > 0 && hit.lane == sheer_[i - 1].lane && hit.instance == sheer_[i - 1].instance &&
+            hit.triangle == sheer_[i - 1].triangle)
+            continue;
+        const std::uint32_t ray = first + hit.lane;
+        const WaveArrays& r = shadow_rays_;
+        const ConeRay<float> cone{{r[kOriginX][ray], r[kOriginY][ray], r[kOriginZ][ray]},
+                                  {r[kDirectionX][ray], r[kDirectionY][ray], r[kDirectionZ][ray]},
+                                  wave.points[kFootprint][shadow_point_[ray]]};
+        const Vec3T<float> part = sheer_surface_->transmitted(hit.instance, hit.triangle, cone, 0.0f);
+        left[hit.lane][0] *= part.x, left[hit.lane][1] *= part.y, left[hit.lane][2] *= part.z;
+    }
+    for (std::uint32_t lane = 0; lane < kPacketWidth; ++lane)
+        for (std::size_t c = 0; valid[lane] && c < 3; ++c)
+            arrived[c * arrival_.stride + shadow_point_[first + lane]] = left[lane][c];
+}
+
+}  // namespace tessera

@@ -1,0 +1,146 @@
+// Surfaces that let light through: which media lie on their two sides, and which rays their points send on. Of
+// overlapping media the one of the highest priority fills the space (Schmidt and Budge 2002, "Simple nested dielectrics
+// in ray traced images").
+#include "tile/tile.h"
+#include "trace/waves.h"
+
+#include <algorithm>
+
+namespace tessera {
+namespace {
+
+constexpr int kMostPasses = 64;  // of straight rays
+
+// The media beyond a surface of material m.
+Media beyond(Media media, std::uint32_t m, bool entering) {
+    if (entering) {
+        if (media.count < Media::kMost) media.material[media.count++] = static_cast<std::uint16_t>(m);
+        return media;
+    }
+    for (int i = media.count - 1; i >= 0; --i) {
+        if (media.material[i] != m) continue;
+        std::copy(media.material + i + 1, media.material + media.count, media.material + i);
+        --media.count;
+        break;
+    }
+    return media;
+}
+
+bool is_within(const Media& media, std::uint32_t m) {
+    return std::find(media.material, media.material + media.count, m) != media.material + media.count;
+}
+
+float ior_of(std::uint32_t medium, int channel, const MaterialView* materials) {
+    return medium == kNoMedium ? 1.0f : materials[medium].ior[channel];
+}
+
+}  // namespace
+
+std::uint32_t current_medium(const Media& media, const MaterialView* materials) {
+    std::uint32_t current = kNoMedium;
+    for (int i = 0; i < media.count; ++i)
+        if (current == kNoMedium || materials[media.material[i]].priority >= materials[current].priority)
+            current = media.material[i];
+    return current;
+}
+
+// Sets the indices of refraction, and finds the points that are no boundary at all.
+void WaveShader::cross(const TileTask& task, Wave& wave) {
+    const MaterialView* const materials = scene_->shading->materials;
+    std::fill_n(clear_.reserve(wave.point_count + kMaxLanes), wave.point_count, 0u);
+    for (const PointBatch& b : wave.batches) {
+        const std::uint32_t m = task.frame.instances[b.instance].material;
+        const MaterialView& material = materials[m];
+        if (!may_transmit(material)) continue;
+        for (std::uint32_t p = b.first; p < b.first + b.count; ++p) {
+            const RayState& state = wave.states[wave.ray[p]];
+            std::uint32_t before = kNoMedium, after = m;
+            if (!material.thin) {
+                const bool entering = wave.points[kFacing][p] > 0.0f;
+                before = current_medium(state.media, materials);
+                // Who starts within a medium is not known to be there.
+                if (!entering && !is_within(state.media, m)) before = m;
+                after = current_medium(beyond(state.media, m, entering), materials);
+                clear_[p] = before == after ? ~0u : 0u;
+            }
+            for (int c = 0; c < 3; ++c) {
+                const int channel = state.channel == 0 ? c : state.channel - 1;
+                wave.points[kEtaR + c][p] = ior_of(before, channel, materials) / ior_of(after, channel, materials);
+            }
+        }
+    }
+}
+
+// Which rays every point may send, after it was shaded.
+void WaveShader::choose_rays(const TileTask& task, Wave& wave, bool camera) {
+    const MaterialView* const materials = scene_->shading->materials;
+    for (Buffer<std::uint32_t>* b : {&bounding_, &whole_, &dispersed_, &blended_})
+        std::fill_n(b->reserve(wave.point_count + kMaxLanes), wave.point_count, 0u);
+    has_dispersed_ = has_blended_ = false;
+    const auto scale = [&](std::uint32_t p, float factor) {
+        for (const int n : {kRadianceR, kRadianceG, kRadianceB, kReflectedR, kReflectedG, kReflectedB, kEnteringR,
+                            kEnteringG, kEnteringB})
+            wave.shades[n][p] *= factor;
+    };
+    for (const PointBatch& b : wave.batches) {
+        const MaterialView& material = materials[task.frame.instances[b.instance].material];
+        const bool transmits = may_transmit(material), blends = material.alpha_mode == AlphaMode::kBlend && !camera;
+        const bool disperses = material.ior[0] != material.ior[2] && !material.thin;
+        for (std::uint32_t p = b.first; p < b.first + b.count; ++p) {
+            const RayState& state = wave.states[wave.ray[p]];
+            const bool clear = transmits && clear_[p];
+            if (clear) {
+                scale(p, 0.0f);
+                for (int c = 0; c < 3; ++c) wave.shades[kEnteringR + c][p] = 1.0f;
+                wave.shades[kAlpha][p] = 1.0f;
+            } else if (blends) {
+                scale(p, wave.shades[kAlpha][p]);
+            }
+            if (clear || (transmits && material.thin))
+                for (int c = 0; c < 3; ++c) wave.points[kEtaR + c][p] = 1.0f;
+            const bool may_pass = state.passes < kMostPasses, may_turn = state.depth < scene_->max_depth;
+            const bool splits = disperses && state.channel == 0 && !clear;
+            if (may_turn) bounding_[p] = ~0u;
+            if (transmits && (clear ? may_pass : may_turn)) (splits ? dispersed_ : whole_)[p] = ~0u;
+            if (blends && may_pass) blended_[p] = ~0u;
+            has_dispersed_ |= splits;
+            has_blended_ |= blends;
+        }
+    }
+}
+
+// What the medium leaves of the light that came along the rays of a wave.
+void WaveShader::absorb(Wave& wave) const {
+    const MaterialView* const materials = scene_->shading->materials;
+    for (std::uint32_t p = 0; p < wave.point_count; ++p) {
+        const std::uint32_t ray = wave.ray[p];
+        if (!wave.used[p] || wave.states[ray].media.count == 0) continue;
+        const MaterialView& medium = materials[current_medium(wave.states[ray].media, materials)];
+        const Vec3T<float> left = transmittance(Vec3T<float>::load(medium.absorption), wave.distance[p]);
+        const float part[3] = {left.x, left.y, left.z};
+        for (std::size_t c = 0; c < 3; ++c) wave.kept[c][ray] = part[c];
+        wave.points[kTimes][p] *= std::max({left.x, left.y, left.z});
+    }
+}
+
+RayState WaveShader::next_state(const TileTask& task, const Wave& from, std::uint32_t point,
+                                const SpawnJob& job) const {
+    RayState state = from.states[from.ray[point]];
+    if (job.kind == SpawnJob::Kind::kStraight) {
+        ++state.passes;
+        return state;
+    }
+    if (job.kind == SpawnJob::Kind::kMirrored) {
+        ++state.depth;
+        state.straight = false;
+        return state;
+    }
+    const std::uint32_t m = task.frame.instances[from.instance[from.ray[point]]].material;
+    if (!scene_->shading->materials[m].thin) state.media = beyond(state.media, m, from.points[kFacing][point] > 0.0f);
+    ++(clear_[point] ? state.passes : state.depth);
+    if (job.channels[0] != job.channels[1] || job.channels[1] != job.channels[2])
+        state.channel = static_cast<std::uint8_t>(job.channels[0] > 0 ? 1 : job.channels[1] > 0 ? 2 : 3);
+    return state;
+}
+
+}  // namespace tessera

@@ -1,0 +1,126 @@
+// Rays as packets: through the picture, from a wave, and towards lights; and the rays that go on from surface points.
+// Part of a kernel file, once per instruction set.
+#pragma once
+
+#include "simd/records.h"
+#include "trace/wave_data.h"
+
+namespace tessera::TESSERA_ISA_NAMESPACE {
+
+// Numbers of a wave by their names.
+TESSERA_INLINE Vec3T<Float> load3(const WaveArrays& arrays, int number, std::uint32_t at) {
+    return {load<Float>(arrays[number] + at), load<Float>(arrays[number + 1] + at),
+            load<Float>(arrays[number + 2] + at)};
+}
+TESSERA_INLINE void store3(const WaveArrays& arrays, int number, std::uint32_t at, const Vec3T<Float>& v) {
+    store(arrays[number] + at, v.x);
+    store(arrays[number + 1] + at, v.y);
+    store(arrays[number + 2] + at, v.z);
+}
+// Those of the mask, together.
+TESSERA_INLINE void store_some(float* to, Mask mask, Float v) { store(to, compress(v, mask)); }
+TESSERA_INLINE void store_some3(const WaveArrays& arrays, int number, std::uint32_t at, Mask mask,
+                                const Vec3T<Float>& v) {
+    store_some(arrays[number] + at, mask, v.x);
+    store_some(arrays[number + 1] + at, mask, v.y);
+    store_some(arrays[number + 2] + at, mask, v.z);
+}
+
+TESSERA_INLINE void put_ray(RayPacket<kPacketWidth>& packet, int lane, const Vec3T<Float>& origin,
+                            const Vec3T<Float>& direction, Float t_near, Float t_far) {
+    store(packet.org_x + lane, origin.x);
+    store(packet.org_y + lane, origin.y);
+    store(packet.org_z + lane, origin.z);
+    store(packet.dir_x + lane, direction.x);
+    store(packet.dir_y + lane, direction.y);
+    store(packet.dir_z + lane, direction.z);
+    store(packet.t_near + lane, t_near);
+    store(packet.t_far + lane, t_far);
+}
+
+// Directions have length 1 along the view axis, so that t is the distance there.
+inline void primary_rays(const PrimaryRaysJob& job) {
+    constexpr int kSide = 4;
+    const float x = static_cast<float>(256 * job.x + job.offset.x), y = static_cast<float>(256 * job.y + job.offset.y);
+    const Float zero(0.0f), one(1.0f);
+    for (int lane = 0; lane < kPacketWidth; lane += kLanes<Float>) {
+        const Int pixel = iota<Int>() + Int(lane);
+        const EyeDirection<Float> eye(job.rays, to_float((pixel & Int(kSide - 1)) << 8) + Float(x),
+                                      to_float((pixel >> 2) << 8) + Float(y));
+        Vec3T<Float> origin{zero, zero, zero}, direction{-eye.x, -eye.y, -one};
+        if (job.rays.orthographic) origin = {-eye.x, -eye.y, zero}, direction = {zero, zero, -one};
+        put_ray(*job.packet, lane, transform_point(job.trace_from_camera, origin),
+                transform_direction(job.trace_from_camera, direction), Float(job.t_near), Float(job.t_far));
+    }
+}
+
+inline void pack(const PackJob& job) {
+    for (int lane = 0; lane < kPacketWidth; lane += kLanes<Float>) {
+        const std::uint32_t at = job.first + static_cast<std::uint32_t>(lane);
+        put_ray(*job.packet, lane, transform_point(job.trace_from_camera, load3(job.rays, kOriginX, at)),
+                transform_direction(job.trace_from_camera, load3(job.rays, kDirectionX, at)), Float(0.0f),
+                Float(job.t_far));
+    }
+}
+
+// A light reaches a point that faces it; the way there ends a little before it.
+inline void shadow_rays(ShadowRaysJob& job) {
+    constexpr float kNearly = 1.0f - 1e-5f;
+    const LightView light = job.shading->lights[job.light];
+    std::uint32_t made = 0;
+    for (std::uint32_t at = 0; at < job.count; at += kLanes<Float>) {
+        const Vec3T<Float> p = load3(job.points, kPositionX, at), ng = load3(job.points, kFlatX, at);
+        const LightSample<Float> sample = sample_light(light, p);
+        const Mask some = (load<Uint>(job.used + at) != Uint(0u)) & (sample.strength > Float(0.0f)) &
+                          (dot(load3(job.points, kNormalX, at), sample.to_light) > Float(0.0f));
+        const std::uint32_t bits = mask_bits(some);
+        if (!bits) continue;
+        const Vec3T<Float> origin = ray_origin(p, ng, sample.to_light, load<Float>(job.points[kRounding] + at));
+        store_some3(job.rays, kOriginX, made, some, origin);
+        store_some3(job.rays, kDirectionX, made, some, sample.to_light);
+        store_some(job.t_far + made, some, sample.distance * Float(kNearly));
+        alignas(64) float index[kLanes<Float>];
+        store(index, compress(as_float(as_uint(iota<Int>() + Int(static_cast<std::int32_t>(at)))), some));
+        __builtin_memcpy(job.point + made, index, sizeof index);
+        made += static_cast<std::uint32_t>(__builtin_popcount(bits));
+    }
+    job.made = made;
+}
+
+inline void spawn(SpawnJob& job) {
+    std::uint32_t made = job.made;
+    for (std::uint32_t at = 0; at < job.count; at += kLanes<Float>) {
+        Vec3T<Float> weight;
+        if (job.kind == SpawnJob::Kind::kStraight) {
+            // What a surface lets through for its alpha.
+            weight = Vec3T<Float>::splat(Float(1.0f) - load<Float>(job.shades[kAlpha] + at));
+        } else {
+            weight = load3(job.shades, job.kind == SpawnJob::Kind::kMirrored ? kReflectedR : kEnteringR, at);
+            weight = weight * Vec3T<Float>::load(job.channels);
+        }
+        const Float times = load<Float>(job.points[kTimes] + at) * max(max(weight.x, weight.y), weight.z);
+        const Mask some = (load<Uint>(job.used + at) != Uint(0u)) & (times > Float(job.least));
+        const std::uint32_t bits = mask_bits(some);
+        if (!bits) continue;
+        const Vec3T<Float> p = load3(job.points, kPositionX, at), view = load3(job.points, kViewX, at),
+                           normal = load3(job.points, kNormalX, at), ng = load3(job.points, kFlatX, at);
+        Vec3T<Float> direction = -view;
+        if (job.kind == SpawnJob::Kind::kMirrored)
+            direction = normalize_or(mirrored(view, normal, ng), normal);
+        else if (job.kind == SpawnJob::Kind::kRefracted) {
+            const Float eta = load<Float>(job.points[job.eta] + at);
+            direction = select3(eta == Float(1.0f), direction, refracted(view, normal, ng, eta).direction);
+        }
+        store_some3(job.rays, kOriginX, made, some,
+                    ray_origin(p, ng, direction, load<Float>(job.points[kRounding] + at)));
+        store_some3(job.rays, kDirectionX, made, some, direction);
+        store_some3(job.rays, kWeightR, made, some, weight);
+        store_some(job.rays[kConeWidth] + made, some, load<Float>(job.points[kFootprint] + at));
+        store_some(job.rays[kThroughput] + made, some, times);
+        store_some(job.rays[kParent] + made, some, as_float(as_uint(iota<Int>() + Int(static_cast<std::int32_t>(at)))));
+        made += static_cast<std::uint32_t>(__builtin_popcount(bits));
+    }
+    job.made = made;
+}
+
+}  // namespace tessera::TESSERA_ISA_NAMESPACE

@@ -1,0 +1,51 @@
+#include "trace/sheer_surface.h"
+
+#include "shading/traced_shade.h"
+
+namespace tessera {
+
+bool SheerSurface::select(std::uint32_t instance, std::uint32_t triangle) {
+    if (instance == instance_ && triangle == triangle_) return visible_;
+    instance_ = instance;
+    triangle_ = triangle;
+    recorded_ = false;
+    const InstanceView& view = frame_.instances[instance];
+    setup_triangle(view, triangle, frame_.projection, setup_);
+    visible_ = setup_.visible() && (setup_.front(view) || material(instance).double_sided);
+    return visible_;
+}
+
+float SheerSurface::alpha(SamplePosition at) {
+    const InstanceView& view = frame_.instances[instance_];
+    if (!recorded_) {
+        layout_ = surface_layout(view.mesh, material(instance_), frame_.projection.orthographic);
+        make_surface_record(view, triangle_, setup_, frame_.projection, layout_, record_);
+        recorded_ = true;
+    }
+    const float x = static_cast<float>(at.x), y = static_cast<float>(at.y);
+    SurfaceSample<float> sample;
+    sample_planes(
+        layout_, x, y, [this](int i) { return record_[i]; }, sample);
+    return base_color(material(instance_), surface_point(layout_, rays_, sample, x, y, context_.footprint_scale)).w;
+}
+
+SurfacePoint<float> SheerSurface::hit(std::uint32_t instance, std::uint32_t triangle, const ConeRay<float>& ray,
+                                      float spread) const {
+    const InstanceView& view = frame_.instances[instance];
+    Corner<float> corners[3];
+    for (std::size_t i = 0; i < 3; ++i)
+        corners[i] = fetch_corner(view.mesh, view.mesh.triangles[3 * std::size_t{triangle} + i]);
+    return ray_surface(view, corners, ray, spread, context_.footprint_scale).point;
+}
+
+float SheerSurface::alpha(std::uint32_t instance, std::uint32_t triangle, const ConeRay<float>& ray,
+                          float spread) const {
+    return base_color(material(instance), hit(instance, triangle, ray, spread)).w;
+}
+
+Vec3T<float> SheerSurface::transmitted(std::uint32_t instance, std::uint32_t triangle, const ConeRay<float>& ray,
+                                       float spread) const {
+    return straight_through(material(instance), hit(instance, triangle, ray, spread));
+}
+
+}  // namespace tessera

@@ -1,0 +1,99 @@
+// The rays of a wave through the hierarchies, and the surface points of their hits.
+#include "tile/tile.h"
+#include "trace/waves.h"
+
+#include <algorithm>
+
+namespace tessera {
+
+namespace {
+
+constexpr float kInfinity = 3.0e38f;  // longer than any way through a scene
+
+}  // namespace
+
+// Nothing is there: ambient light, or for light that only passed surfaces the background.
+void WaveShader::miss(Wave& wave, std::uint32_t ray) const {
+    float light[3] = {0, 0, 0}, passed[3] = {0, 0, 0};
+    const RayState state = scene_->simple ? RayState{} : wave.states[ray];
+    if (!scene_->simple && state.straight) {
+        for (float& part : passed) part = 1.0f;
+    } else {
+        const Vec3T<float> around = radiance_around(
+            *scene_->shading,
+            Vec3T<float>{wave.rays[kDirectionX][ray], wave.rays[kDirectionY][ray], wave.rays[kDirectionZ][ray]});
+        light[0] = around.x, light[1] = around.y, light[2] = around.z;
+    }
+    const std::uint32_t medium = current_medium(state.media, scene_->shading->materials);
+    for (std::size_t c = 0; c < 3; ++c) {
+        // The way through a medium without an end.
+        const bool dark = medium != kNoMedium && scene_->shading->materials[medium].absorption[c] > 0.0f;
+        wave.kept[c][ray] = 1.0f;
+        wave.light[c][ray] = dark ? 0.0f : light[c];
+        wave.passed[c][ray] = dark ? 0.0f : passed[c];
+    }
+}
+
+// Cut-outs and blended surfaces before what a ray has hit: the nearest one that is there is hit instead.
+void WaveShader::see_sheer(Wave& wave, std::uint32_t first, const RayPacket<kPacketWidth>& packet) {
+    std::sort(sheer_.begin(), sheer_.end(), [](const SheerHit& a, const SheerHit& b) {
+        if (a.lane != b.lane) return a.lane < b.lane;
+        if (a.t != b.t) return a.t < b.t;
+        return a.instance != b.instance ? a.instance < b.instance : a.triangle < b.triangle;
+    });
+    std::uint32_t decided = kNoHit;
+    for (const SheerHit& hit : sheer_) {
+        if (hit.lane == decided || !(hit.t < packet.t_far[hit.lane])) continue;
+        const std::uint32_t ray = first + hit.lane;
+        const MaterialView& material = sheer_surface_->material(hit.instance);
+        if (material.alpha_mode == AlphaMode::kMask &&
+            sheer_surface_->alpha(hit.instance, hit.triangle, cone_ray(wave.rays, ray), scene_->spread) <
+                material.alpha_cutoff)
+            continue;
+        wave.instance[ray] = hit.instance;
+        wave.triangle[ray] = hit.triangle;
+        decided = hit.lane;
+    }
+}
+
+void WaveShader::trace(const TileTask& task, Wave& wave, bool coherent) {
+    const bool looks = scene_->scene->has_undecided();
+    for (std::uint32_t first = 0; first < wave.ray_count; first += kPacketWidth) {
+        RayPacket<kPacketWidth> packet;
+        scene_->kernels->pack({wave.rays, scene_->scene->trace_from_camera(), first, kInfinity, &packet});
+        alignas(64) int valid[kPacketWidth];
+        for (std::uint32_t lane = 0; lane < kPacketWidth; ++lane) {
+            valid[lane] = first + lane < wave.ray_count ? -1 : 0;
+            packet.mask[lane] = kMeetsSolid | kMeetsSheer;
+        }
+        sheer_.clear();
+        scene_->scene->nearest(valid, packet, coherent, false, looks ? &sheer_ : nullptr);
+        for (std::uint32_t lane = 0; lane < kPacketWidth && first + lane < wave.ray_count; ++lane) {
+            wave.instance[first + lane] = packet.instance[lane];
+            wave.triangle[first + lane] = packet.triangle[lane];
+        }
+        if (!sheer_.empty()) see_sheer(wave, first, packet);
+    }
+    for (std::uint32_t r = 0; r < wave.ray_count; ++r)
+        if (wave.instance[r] == kNoHit) miss(wave, r);
+    arrange(task, wave);
+    for (const InstanceRun& run : wave.runs) {
+        RaySurfacesJob job{};
+        job.instance = &task.frame.instances[run.instance];
+        job.material = &scene_->shading->materials[job.instance->material];
+        job.layout = task.shading_batches.layouts[run.instance];
+        job.rays = wave.rays;
+        job.ray = wave.ray.data() + run.first;
+        job.triangle = wave.hit_triangle.data() + run.first;
+        job.count = run.count;
+        job.first = run.first;
+        job.spread = scene_->spread;
+        job.footprint_scale = scene_->shading->footprint_scale;
+        job.instance_size = scene_->instance_size[run.instance];
+        job.points = wave.points;
+        job.distance = wave.distance.data();
+        scene_->kernels->ray_surfaces(job);
+    }
+}
+
+}  // namespace tessera

@@ -1,0 +1,196 @@
+// The ray tracer on one page: the samples of a part of a tile are the first wave. Every wave is shaded, with rays
+// towards the lights, and sends on the rays of the next one; when none are left, what they found flows back. That is
+// the recursion of Whitted 1980, "An improved illumination model for shaded display", breadth first.
+#include "trace/waves.h"
+
+#include "tile/tile.h"
+
+#include <algorithm>
+#include <bit>
+
+namespace tessera {
+namespace {
+
+constexpr std::uint32_t kSamplesAtOnce = 1024;  // whose waves stay in the second-level cache
+
+// The point that a ray started from.
+std::uint32_t point_of(const Wave& wave, std::uint32_t ray) {
+    return std::bit_cast<std::uint32_t>(wave.rays[kParent][ray]);
+}
+
+}  // namespace
+
+void WaveShader::begin(const TransportScene& scene) {
+    scene_ = &scene;
+    sheer_surface_.emplace(*scene.frame, *scene.shading);
+    counters = {};
+}
+
+void WaveShader::shade(const TileTask& task, const SampleList& samples, float* const (&color)[4]) {
+    find_planes(task, samples);
+    for (std::uint32_t first = 0; first < samples.count; first += kSamplesAtOnce)
+        shade_samples(task, samples, first, std::min(kSamplesAtOnce, samples.count - first), color);
+}
+
+void WaveShader::shade_samples(const TileTask& task, const SampleList& samples, std::uint32_t first,
+                               std::uint32_t count, float* const (&color)[4]) {
+    const auto wave = [this](std::size_t n) -> Wave& {
+        while (waves_.size() <= n) waves_.push_back(std::make_unique<Wave>());
+        return *waves_[n];
+    };
+    take_samples(task, samples, first, count);
+    shade_points(task, wave(0), true);
+    std::size_t last = 0;
+    while (send_on(task, wave(last), wave(last + 1), static_cast<int>(last))) {
+        ++last;
+        trace(task, wave(last), last == 1);
+        shade_points(task, wave(last), false);
+    }
+    for (; last > 0; --last) gather(wave(last), wave(last - 1));
+    write(first, color);
+}
+
+// The first wave: points of the picture, through the rasterizer's surface function.
+void WaveShader::take_samples(const TileTask& task, const SampleList& samples, std::uint32_t first,
+                              std::uint32_t count) {
+    if (waves_.empty()) waves_.push_back(std::make_unique<Wave>());
+    Wave& wave = *waves_[0];
+    wave.ray_count = count;
+    wave.reserve_rays(count);
+    for (std::uint32_t i = 0; i < count; ++i) {
+        const TileTriangle& t = samples.triangles[samples.ordinal[first + i] - 1];
+        wave.instance[i] = t.instance;
+        wave.triangle[i] = t.triangle;
+    }
+    if (!scene_->simple) wave.states.assign(count, RayState{});
+    arrange(task, wave);
+
+    x_.reserve(wave.point_count);
+    y_.reserve(wave.point_count);
+    ordinal_.reserve(wave.point_count);
+    for (std::uint32_t p = 0; p < wave.point_count; ++p) {
+        const std::uint32_t from = first + wave.ray[p];
+        x_[p] = samples.x[from], y_[p] = samples.y[from], ordinal_[p] = samples.ordinal[from];
+        wave.points[kTimes][p] = 1.0f;
+        wave.points[kRounding][p] = scene_->instance_size[samples.triangles[ordinal_[p] - 1].instance];
+    }
+    const ProjectionView& picture = task.frame.projection;
+    const float pixel = 2.0f / (picture.height * picture.scale_y);
+    for (const PointBatch& b : wave.batches) {
+        PrimarySurfacesJob job{};
+        job.source = &task.source;
+        job.material = &scene_->shading->materials[task.frame.instances[b.instance].material];
+        job.layout = task.shading_batches.layouts[b.instance];
+        job.records = samples.records;
+        job.record_of = samples.record_of;
+        job.planes = planes_.data();
+        job.x = x_.data() + b.first;
+        job.y = y_.data() + b.first;
+        job.list = ordinal_.data() + b.first;
+        job.count = b.count;
+        job.first = b.first;
+        job.width_at_one = picture.orthographic ? 0.0f : pixel;
+        job.width = picture.orthographic ? pixel : 0.0f;
+        job.points = wave.points;
+        scene_->kernels->primary_surfaces(job);
+    }
+}
+
+// Light from the lights and all around, and what goes on.
+void WaveShader::shade_points(const TileTask& task, Wave& wave, bool camera) {
+    if (!scene_->simple) cross(task, wave);
+    find_light(wave);
+    for (const PointBatch& b : wave.batches) {
+        TracedShadeJob job{};
+        job.shading = scene_->shading;
+        job.material = &scene_->shading->materials[task.frame.instances[b.instance].material];
+        job.layout = task.shading_batches.layouts[b.instance];
+        job.points = wave.points;
+        job.shades = wave.shades;
+        job.arrival = arrival_;
+        job.first = b.first;
+        job.count = b.count;
+        scene_->kernels->shade(job);
+    }
+    if (!scene_->simple) choose_rays(task, wave, camera);
+    for (std::uint32_t p = 0; p < wave.point_count; ++p) {
+        if (!wave.used[p]) continue;
+        for (int c = 0; c < 3; ++c) {
+            wave.light[c][wave.ray[p]] = wave.shades[kRadianceR + c][p];
+            wave.passed[c][wave.ray[p]] = 0.0f;
+        }
+    }
+    if (!scene_->simple && !camera) absorb(wave);
+}
+
+// Makes the rays that the points of a wave send on. False where there are none.
+bool WaveShader::send_on(const TileTask& task, Wave& from, Wave& to, int depth) {
+    to.ray_count = 0;
+    if (!scene_->bounces || from.point_count == 0) return false;
+    to.reserve_rays(5 * from.point_count);
+    SpawnJob job{};
+    job.points = from.points;
+    job.shades = from.shades;
+    job.count = from.point_count;
+    job.least = scene_->least;
+    job.rays = to.rays;
+    const auto spawn = [&](SpawnJob::Kind kind, const std::uint32_t* used, int eta, float r, float g, float b) {
+        job.kind = kind;
+        job.used = used;
+        job.eta = eta;
+        job.channels[0] = r, job.channels[1] = g, job.channels[2] = b;
+        const std::uint32_t before = job.made;
+        scene_->kernels->spawn(job);
+        if (!scene_->simple) {
+            to.states.resize(job.made);
+            for (std::uint32_t i = before; i < job.made; ++i)
+                to.states[i] = next_state(task, from, point_of(to, i), job);
+        }
+        return job.made - before;
+    };
+    using enum SpawnJob::Kind;
+    if (scene_->simple) {
+        if (depth < scene_->max_depth) counters.mirrored_rays += spawn(kMirrored, from.used.data(), kEtaG, 1, 1, 1);
+    } else {
+        counters.mirrored_rays += spawn(kMirrored, bounding_.data(), kEtaG, 1, 1, 1);
+        counters.refracted_rays += spawn(kRefracted, whole_.data(), kEtaG, 1, 1, 1);
+        if (has_dispersed_) {
+            counters.refracted_rays += spawn(kRefracted, dispersed_.data(), kEtaR, 1, 0, 0);
+            counters.refracted_rays += spawn(kRefracted, dispersed_.data(), kEtaG, 0, 1, 0);
+            counters.refracted_rays += spawn(kRefracted, dispersed_.data(), kEtaB, 0, 0, 1);
+        }
+        if (has_blended_) counters.straight_rays += spawn(kStraight, blended_.data(), kEtaG, 1, 1, 1);
+    }
+    to.ray_count = job.made;
+    return job.made > 0;
+}
+
+// What came along the rays of a wave, to the points that they left: in their order, so mirrored light first.
+void WaveShader::gather(const Wave& from, Wave& to) const {
+    for (std::uint32_t r = 0; r < from.ray_count; ++r) {
+        const std::uint32_t ray = to.ray[point_of(from, r)];
+        for (int c = 0; c < 3; ++c) {
+            const float weight = from.rays[kWeightR + c][r];
+            float light = from.light[c][r], passed = from.passed[c][r];
+            if (!scene_->simple) light *= from.kept[c][r], passed *= from.kept[c][r];
+            to.light[c][ray] += weight * light;
+            to.passed[c][ray] += weight * passed;
+        }
+    }
+}
+
+// Light that passes to the background makes the sample transparent by what passes in every channel; the rest of it is
+// the background's light, coloured.
+void WaveShader::write(std::uint32_t first, float* const (&color)[4]) const {
+    const Wave& wave = *waves_[0];
+    for (std::uint32_t p = 0; p < wave.point_count; ++p) {
+        if (!wave.used[p]) continue;
+        const std::uint32_t ray = wave.ray[p];
+        const float clear = std::min({wave.passed[0][ray], wave.passed[1][ray], wave.passed[2][ray]});
+        for (std::size_t c = 0; c < 3; ++c)
+            color[c][first + ray] = wave.light[c][ray] + (wave.passed[c][ray] - clear) * scene_->background[c];
+        color[3][first + ray] = wave.shades[kAlpha][p] * (1.0f - clear);
+    }
+}
+
+}  // namespace tessera
