@@ -1,5 +1,5 @@
 find_package(benchmark REQUIRED)
 target_link_libraries(tessera_raster_bench PRIVATE benchmark::benchmark)
-foreach(name workloads workload_meshes parse)
+foreach(name workloads workload_meshes traced_workloads parse)
   target_sources(tessera_raster_bench PRIVATE ${PROJECT_SOURCE_DIR}/src/cli/${name}.cpp)
 endforeach()

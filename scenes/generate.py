@@ -405,9 +405,58 @@ def lines():
     return doc
 
 
+def glass():
+    doc = Document("Mirrors and glass")
+    tiles = doc.texture("checker", "checker.png")
+    floor = doc.material("tiles", (1, 1, 1), roughness=0.7, texture=tiles)
+    doc.node("floor", mesh=doc.mesh("floor", quad([0, 0, -4], [14, 0, 0], [0, 0, -10], (14, 10), 4), floor))
+    wall = doc.material("wall", srgb("#b9a58c"), roughness=0.95)
+    doc.node("wall", mesh=doc.mesh("wall", quad([0, 4, -6], [14, 0, 0], [0, 4, 0]), wall))
+
+    def clear(ior, thickness=1.0, color=None, distance=None, priority=None, dispersion=None):
+        extensions = {"KHR_materials_transmission": {"transmissionFactor": 1.0}, "KHR_materials_ior": {"ior": ior}}
+        if thickness:
+            volume = {"thicknessFactor": thickness}
+            if color:
+                volume.update({"attenuationColor": list(color), "attenuationDistance": distance})
+            if priority is not None:
+                volume["extensions"] = {"TESSERA_volume": {"priority": priority}}
+                doc.extensions.add("TESSERA_volume")
+            extensions["KHR_materials_volume"] = volume
+        if dispersion:
+            extensions["KHR_materials_dispersion"] = {"dispersion": dispersion}
+        return {"extensions": extensions}
+
+    ball = sphere(1.0, 96, 48)
+
+    def place(name, radius, position, material, shape=ball, shape_name="ball", **more):
+        doc.node(name, translation=position, scale=[radius] * 3, mesh=doc.mesh(name, shape, material, shape_name), **more)
+
+    place("crystal ball", 0.8, [-0.35, 0.8, 0.9], doc.material("crystal", roughness=0.0, **clear(1.5)))
+    place("mirror ball", 1.0, [1.75, 1.0, -1.0], doc.material("silver", (0.95, 0.93, 0.9), 1.0, 0.0))
+    place("gold ball", 0.5, [-1.5, 0.5, -1.6], doc.material("gold", (1.0, 0.77, 0.34), 1.0, 0.12))
+    # A drop of water in a glass ball: where they overlap the glass, of the higher priority, fills the space.
+    place("thick glass", 0.62, [-2.3, 0.62, 0.4], doc.material("bottle glass", roughness=0.0, **clear(
+        1.52, color=(0.55, 0.85, 0.6), distance=0.6, priority=1)))
+    place("water", 0.4, [-2.2, 0.72, 0.5], doc.material("water", roughness=0.0, **clear(1.333, priority=2)))
+    ruby = doc.material("ruby", roughness=0.0, **clear(1.77, color=(0.9, 0.06, 0.12), distance=0.5))
+    place("ruby block", 1.0, [1.15, 0.35, 1.25], ruby, box([0.7, 0.7, 0.7], 0.05), "block", rotation=about([0, 1, 0], 32))
+    prism = doc.material("flint", roughness=0.0, **clear(1.7, dispersion=0.8))
+    place("prism", 1.0, [2.35, 0.0, 0.9], prism, cylinder(0.42, 0.42, 1.1, 0.0, 3), "prism", rotation=about([0, 1, 0], 15))
+    pane = doc.material("pane", (0.75, 0.9, 1.0), roughness=0.0, doubleSided=True, **clear(1.5, 0))
+    place("pane", 1.0, [-0.55, 1.1, -2.6], pane, quad([0, 0, 0], [0.9, 0, 0], [0, 1.1, 0]), "pane")
+    kettle = {"model": "phong", "diffuse": srgb("#7d3c98"), "specular": [0.6, 0.6, 0.6], "shininess": 60.0,
+              "ambient": srgb("#7d3c98"), "mirror": [0.3, 0.3, 0.3]}
+    place("lacquer", 0.36, [0.35, 0.36, 2.0], doc.material("lacquer", srgb("#7d3c98"), extensions={PHONG: kettle}))
+    doc.light("lamp", "point", (1, 0.94, 0.84), 260.0, [3.2, 5.2, 4.6])
+    doc.light("window", "directional", (0.78, 0.87, 1), 1.1, [-5, 4, 5], [0, 0, 0])
+    doc.camera("main", [0.1, 2.3, 7.4], [-0.05, 0.85, 0], 34)
+    return doc
+
+
 SCENES = {"cornell-box": cornell_box, "spheres": spheres, "lights": lights, "materials": materials,
           "hierarchy": hierarchy, "transparency": transparency, "motion": motion,
-          "lines": lines}
+          "lines": lines, "glass": glass}
 
 
 def make_all(folder):

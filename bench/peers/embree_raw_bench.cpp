@@ -45,13 +45,14 @@ Hits trace_singles(const Work& work, const RayTile& rays, int count) {
     Hits hits;
     RTCIntersectContext context = make_context(work.coherent);
     for (int i = 0; i < count; ++i) {
-        RTCRay ray = single_ray({rays.org_x[i], rays.org_y[i], rays.org_z[i]},
-                                {rays.dir_x[i], rays.dir_y[i], rays.dir_z[i]}, rays.t_near[i], rays.t_far[i]);
+        const vec3 origin(rays.org_x[i], rays.org_y[i], rays.org_z[i]);
+        const vec3 direction(rays.dir_x[i], rays.dir_y[i], rays.dir_z[i]);
         if (work.kind == Kind::kShadow) {
+            RTCRay ray = single_ray(origin, direction, rays.t_near[i], rays.t_far[i]);
             rtcOccluded1(work.scene, &context, &ray);
             hits.count += ray.tfar < 0;
         } else {
-            const RTCRayHit query = intersect(work.scene, context, ray);
+            const RTCRayHit query = intersect(work.scene, context, origin, direction, rays.t_near[i], rays.t_far[i]);
             if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) continue;
             ++hits.count;
             hits.distance += query.ray.tfar;
@@ -108,7 +109,7 @@ void find_points(RTCScene scene, Frame& frame) {
         SurfacePoints& points = frame.points[static_cast<std::size_t>(tile)];
         for (int i = 0; i < count; ++i) {
             const vec3 direction(rays.dir_x[i], rays.dir_y[i], rays.dir_z[i]);
-            const RTCRayHit query = intersect(scene, context, single_ray(frame.camera.eye, direction, 0, kEverything));
+            const RTCRayHit query = intersect(scene, context, frame.camera.eye, direction);
             if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) continue;
             const int pixel = tile * frame.tile_side * frame.tile_side + i;
             points.add(frame.camera.eye + query.ray.tfar * direction, facing_normal(query),

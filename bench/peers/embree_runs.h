@@ -121,9 +121,10 @@ inline RTCRay single_ray(vec3 origin, vec3 direction, float near, float far) {
 }
 
 // The nearest hit of a single ray; geomID is RTC_INVALID_GEOMETRY_ID where there is none.
-inline RTCRayHit intersect(RTCScene scene, RTCIntersectContext& context, const RTCRay& ray) {
+inline RTCRayHit intersect(RTCScene scene, RTCIntersectContext& context, vec3 origin, vec3 direction, float near = 0,
+                           float far = kEverything) {
     RTCRayHit query;
-    query.ray = ray;
+    query.ray = single_ray(origin, direction, near, far);
     query.hit.geomID = query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
     rtcIntersect1(scene, &context, &query);
     return query;

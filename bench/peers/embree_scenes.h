@@ -111,6 +111,10 @@ struct Camera {
 inline constexpr int kBlockX[16] = {0, 1, 0, 1, 2, 3, 2, 3, 0, 1, 0, 1, 2, 3, 2, 3};
 inline constexpr int kBlockY[16] = {0, 0, 1, 1, 0, 0, 1, 1, 2, 2, 3, 3, 2, 2, 3, 3};
 
+// The place of pixel i within a tile.
+inline int tile_x(int side, int i) { return i / 16 % (side / 4) * 4 + kBlockX[i % 16]; }
+inline int tile_y(int side, int i) { return i / 16 / (side / 4) * 4 + kBlockY[i % 16]; }
+
 enum class Kind { kPrimary, kShadow, kMirror, kDiffuse };
 inline constexpr Kind kKinds[] = {Kind::kPrimary, Kind::kShadow, Kind::kMirror, Kind::kDiffuse};
 inline const char* name(Kind kind) {
@@ -189,12 +193,8 @@ struct Frame {
           points(static_cast<std::size_t>(columns * rows)) {}
 
     int tiles() const { return columns * rows; }
-    int pixel_x(int tile, int i) const {
-        return tile % columns * tile_side + i / 16 % (tile_side / 4) * 4 + kBlockX[i % 16];
-    }
-    int pixel_y(int tile, int i) const {
-        return tile / columns * tile_side + i / 16 / (tile_side / 4) * 4 + kBlockY[i % 16];
-    }
+    int pixel_x(int tile, int i) const { return tile % columns * tile_side + tile_x(tile_side, i); }
+    int pixel_y(int tile, int i) const { return tile / columns * tile_side + tile_y(tile_side, i); }
     const SurfacePoints& points_of(int tile) const { return points[static_cast<std::size_t>(tile)]; }
 
     // Fills `rays`, which has room for a tile, and returns how many there are. Behind the last one lie inactive rays,

@@ -23,24 +23,25 @@ struct Work {
     bool coherent;
     std::vector<Pixel>& pixels;
 
-    void store(int tile, int i, vec3 color) const {
+    // Pixel i of the tile whose first pixel is (x, y).
+    void store(int x, int y, int i, vec3 color) const {
         const auto byte = [](float f) {
             return static_cast<std::uint8_t>(std::sqrt(std::min(1.f, std::max(0.f, f))) * 255 + 0.5f);
         };
-        const int at = frame.pixel_y(tile, i) * kWidth + frame.pixel_x(tile, i);
+        const int at = (y + tile_y(kTileSide, i)) * kWidth + x + tile_x(kTileSide, i);
         pixels[static_cast<std::size_t>(at)] = {byte(color.r), byte(color.g), byte(color.b)};
     }
 };
 
 // --- one ray after the other -------------------------------------------------------------------
 
-inline vec3 radiance(const Work& work, const RTCRay& ray, int bounces, std::size_t& rays) {
+inline vec3 radiance(const Work& work, vec3 origin, vec3 direction, int bounces, std::size_t& rays) {
     RTCIntersectContext context = make_context(false);
-    const RTCRayHit query = intersect(work.scene, context, ray);
+    const RTCRayHit query = intersect(work.scene, context, origin, direction);
     ++rays;
     if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return kBackground;
-    const vec3 direction(ray.dir_x, ray.dir_y, ray.dir_z), normal = facing_normal(query);
-    const vec3 point = vec3(ray.org_x, ray.org_y, ray.org_z) + query.ray.tfar * direction + kOffset * normal;
+    const vec3 normal = facing_normal(query);
+    const vec3 point = origin + query.ray.tfar * direction + kOffset * normal;
     const vec3 to_light = work.frame.light - point;
     const float cosine = glm::dot(normal, to_light) / glm::length(to_light);
     float light = kAmbient;
@@ -53,16 +54,17 @@ inline vec3 radiance(const Work& work, const RTCRay& ray, int bounces, std::size
     const vec3 color = light * kColors[query.hit.geomID];
     if (bounces == 0) return color;
     const vec3 mirrored = direction + -2 * glm::dot(direction, normal) * normal;
-    return color + kMirror * radiance(work, single_ray(point, mirrored, 0, kEverything), bounces - 1, rays);
+    return color + kMirror * radiance(work, point, mirrored, bounces - 1, rays);
 }
 
 inline std::size_t draw_tile_by_rays(const Work& work, int tile) {
     static thread_local Rays<kTilePixels> primary;
     const int count = work.frame.generate(Kind::kPrimary, tile, primary);
+    const int x = work.frame.pixel_x(tile, 0), y = work.frame.pixel_y(tile, 0);
     std::size_t rays = 0;
     for (int i = 0; i < count; ++i) {
         const vec3 direction(primary.dir_x[i], primary.dir_y[i], primary.dir_z[i]);
-        work.store(tile, i, radiance(work, single_ray(work.frame.camera.eye, direction, 0, kEverything), 1, rays));
+        work.store(x, y, i, radiance(work, work.frame.camera.eye, direction, 1, rays));
     }
     return rays;
 }
@@ -183,8 +185,8 @@ std::size_t draw_wave(const Work& work, Wave& wave, Wave& shadows, float weight,
     find_light<W>(work, wave, shadows);
     rays += static_cast<std::size_t>(shadows.count);
     Rays<kTilePixels>& r = wave.rays;
+    for (int i = 0; i < wave.count; ++i) colors.add(wave.pixel[i], weight * wave.light[i], kColors[wave.mesh[i]]);
     for (int i = 0; i < wave.count; ++i) {
-        colors.add(wave.pixel[i], weight * wave.light[i], kColors[wave.mesh[i]]);
         const vec3 direction(r.dir_x[i], r.dir_y[i], r.dir_z[i]);
         const vec3 normal(wave.normal_x[i], wave.normal_y[i], wave.normal_z[i]);
         const vec3 mirrored = direction + -2 * glm::dot(direction, normal) * normal;
@@ -201,7 +203,8 @@ std::size_t draw_tile_by_waves(const Work& work, int tile) {
     for (int i = 0; i < count; ++i) wave.pixel[i] = i;
     std::size_t rays = draw_wave<W>(work, wave, shadows, 1, colors);
     rays += draw_wave<W>(work, wave, shadows, kMirror, colors);
-    for (int i = 0; i < count; ++i) work.store(tile, i, {colors.r[i], colors.g[i], colors.b[i]});
+    const int x = work.frame.pixel_x(tile, 0), y = work.frame.pixel_y(tile, 0);
+    for (int i = 0; i < count; ++i) work.store(x, y, i, {colors.r[i], colors.g[i], colors.b[i]});
     return rays;
 }
 

@@ -74,9 +74,15 @@ Measurement measure(const Workload& w, int frames) {
     m.depth_only = !w.options.want_color;
     m.hash = hexadecimal(hash_pixels(m.depth_only ? result.depth : result.color));
     // Rays do not snap to the grid of 1/256 pixel, so their counts differ at edges.
-    if (w.options.engine != Engine::kReferenceTrace) m.fault = pixel_fault(w, result.stats.pixels_covered);
+    if (w.options.engine != Engine::kTrace && w.options.engine != Engine::kReferenceTrace)
+        m.fault = pixel_fault(w, result.stats.pixels_covered);
     return m;
 }
+
+std::uint64_t rays(const RenderStats& s) {
+    return s.primary_rays + s.shadow_rays + s.mirrored_rays + s.refracted_rays + s.straight_rays;
+}
+double megarays(const Measurement& m) { return static_cast<double>(rays(m.stats)) / m.ms_median * 1e-3; }
 
 void write(JsonWriter& json, const Measurement& m) {
     json.begin_object();
@@ -86,6 +92,7 @@ void write(JsonWriter& json, const Measurement& m) {
     json.member("ms_median", m.ms_median).member("ms_min", m.ms_min);
     json.member("cpu_ms", m.cpu_ms).member("cpu_per_wall", m.cpu_per_wall);
     json.member("pixels_covered", m.stats.pixels_covered);
+    json.member("rays", rays(m.stats)).member("mrays_per_s", megarays(m));
     json.member(m.depth_only ? "depth_hash" : "color_hash", std::string_view(m.hash));
     json.end_object();
 }
@@ -94,15 +101,21 @@ std::string table_head(const Measurement& first) {
     return std::to_string(first.size.width) + "x" + std::to_string(first.size.height) + ", engine " +
            name(first.stats.engine) + ", " + name(first.stats.isa) + ", " + std::to_string(first.stats.threads) +
            (first.stats.threads == 1 ? " thread" : " threads") +
-           "\nworkload            ms median     ms min     cpu ms  cpu/wall      pixels  hash\n";
+           "\nworkload                  ms median     ms min     cpu ms  cpu/wall      pixels  hash\n";
 }
 
 std::string table_row(const Measurement& m) {
     char line[160];
-    std::snprintf(line, sizeof line, "%-18s %10.3f %10.3f %10.3f %9.2f %11llu  %s%s\n", m.workload.c_str(), m.ms_median,
+    std::snprintf(line, sizeof line, "%-24s %10.3f %10.3f %10.3f %9.2f %11llu  %s%s", m.workload.c_str(), m.ms_median,
                   m.ms_min, m.cpu_ms, m.cpu_per_wall, static_cast<unsigned long long>(m.stats.pixels_covered),
                   m.hash.c_str(), m.depth_only ? " (depth)" : "");
-    return line;
+    std::string row = line;
+    if (rays(m.stats) > 0) {
+        std::snprintf(line, sizeof line, "  %llu rays, %.2f Mrays/s", static_cast<unsigned long long>(rays(m.stats)),
+                      megarays(m));
+        row += line;
+    }
+    return row + "\n";
 }
 
 int run(const BenchArguments& a) {
@@ -151,7 +164,7 @@ Command add_bench_command(CLI::App& application) {
         ->take_all()
         ->expected(1)
         ->allow_extra_args(false);
-    option("--engine", a->engine, "NAME", "raster (the default), reference-raster or reference-trace");
+    option("--engine", a->engine, "NAME", "raster (the default), trace, hybrid, reference-raster or reference-trace");
     option("--isa", a->isa, "NAME", "auto (default), scalar, sse4, avx2 or avx512");
     option("--threads", a->threads, "N", "threads to use (default: all this process may)");
     option("--frames", a->frames, "K", "frames to time, after one to warm up (default 11)");

@@ -122,7 +122,7 @@ std::string material_text(const Material& m) {
     add(specular && m.model == ShadingModel::kMetallicRoughness, "specular", m.specular_strength);
     add(!(m.clearcoat == plain.clearcoat), "clearcoat", m.clearcoat.strength);
     add(!(m.sheen == plain.sheen), "sheen roughness", m.sheen.roughness);
-    add(!(m.transmission == plain.transmission), "transmission", m.transmission.strength);
+    add(m.transmission != 0, "transmission", m.transmission);
     add(!(m.volume == plain.volume), "volume", m.volume.thickness, " m");
     add(!(m.anisotropy == plain.anisotropy), "anisotropy", m.anisotropy.strength);
     add(!(m.iridescence == plain.iridescence), "iridescence", m.iridescence.strength);
@@ -148,8 +148,10 @@ void write_material(JsonWriter& json, const Material& m) {
             .number("roughness", s.roughness)
             .texture("color_texture", s.color_texture)
             .texture("roughness_texture", s.roughness_texture);
-    if (const Transmission& t = m.transmission; !(t == plain.transmission))
-        Part(json, "transmission").number("strength", t.strength).texture("texture", t.texture);
+    if (m.transmission != 0)
+        Part(json, "transmission")
+            .number("strength", m.transmission)
+            .texture("texture", m.texture(TextureSlot::kTransmission));
     if (const Volume& v = m.volume; !(v == plain.volume)) {
         Part part(json, "volume");
         part.number("thickness_m", v.thickness).texture("thickness_texture", v.thickness_texture);

@@ -1,6 +1,7 @@
 #include "cli/workloads.h"
 
 #include "cli/parse.h"
+#include "cli/traced_workloads.h"
 #include "cli/workload_meshes.h"
 
 #include <array>
@@ -192,15 +193,16 @@ Workload build(const Description& d, int width, int height) {
 std::vector<std::string> workload_names() {
     std::vector<std::string> names;
     for (const Description& d : kWorkloads) names.emplace_back(d.name);
+    for (const std::string& name : traced_workload_names()) names.push_back(name);
     return names;
 }
 
 Workload make_workload(const std::string& name, int width, int height) {
-    std::string names;
-    for (const Description& d : kWorkloads) {
+    for (const Description& d : kWorkloads)
         if (name == d.name) return build(d, width, height);
-        names += (names.empty() ? "" : ", ") + std::string(d.name);
-    }
+    if (std::optional<Workload> traced = make_traced_workload(name, width, height)) return *std::move(traced);
+    std::string names;
+    for (const std::string& known : workload_names()) names.append(names.empty() ? "" : ", ").append(known);
     refuse("--workload", "'" + name + "' is none of " + names);
 }
 

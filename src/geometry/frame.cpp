@@ -190,6 +190,19 @@ Frame make_frame(const Scene& scene, const View& view, int width, int height, co
     return frame;
 }
 
+float largest_coordinate(const InstanceView& instance, const Bounds3& box) {
+    const float most[3] = {std::max(std::abs(box.min.x), std::abs(box.max.x)),
+                           std::max(std::abs(box.min.y), std::abs(box.max.y)),
+                           std::max(std::abs(box.min.z), std::abs(box.max.z))};
+    float largest = 0;
+    for (int r = 0; r < 3; ++r) {
+        const float* m = instance.object_to_camera + 4 * r;
+        largest = std::max(
+            largest, std::abs(m[0]) * most[0] + std::abs(m[1]) * most[1] + std::abs(m[2]) * most[2] + std::abs(m[3]));
+    }
+    return largest;
+}
+
 bool outside_view(const InstanceView& instance, const Bounds3& box) {
     if (box.empty()) return true;
     // Bit i stays set while every corner is outside plane i. The tolerance covers the rounding of the

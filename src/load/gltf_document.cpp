@@ -27,12 +27,15 @@ constexpr std::string_view kKnownExtensions[] = {"KHR_draco_mesh_compression",
                                                  "EXT_texture_webp",
                                                  "KHR_mesh_quantization",
                                                  "TESSERA_materials_phong",
-                                                 "TESSERA_lights"};
+                                                 "TESSERA_lights",
+                                                 "TESSERA_volume",
+                                                 "KHR_materials_transmission",
+                                                 "KHR_materials_volume",
+                                                 "KHR_materials_dispersion"};
 
 // Read as data of the materials, which shading does not use yet.
-constexpr std::string_view kUndrawnExtensions[] = {
-    "KHR_materials_clearcoat",  "KHR_materials_sheen",       "KHR_materials_transmission", "KHR_materials_volume",
-    "KHR_materials_anisotropy", "KHR_materials_iridescence", "KHR_materials_dispersion"};
+constexpr std::string_view kUndrawnExtensions[] = {"KHR_materials_clearcoat", "KHR_materials_sheen",
+                                                   "KHR_materials_anisotropy", "KHR_materials_iridescence"};
 
 template <class Names>
 bool has(const Names& names, std::string_view name) {

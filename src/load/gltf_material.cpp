@@ -115,6 +115,7 @@ class MaterialReader {
         read_factor(phong, "specular", {&m_.specular.x, 3}, kNoMaximum);
         read_factor(phong, "shininess", {&m_.shininess, 1}, kNoMaximum);
         read_factor(phong, "emission", {&m_.emissive.x, 3}, kNoMaximum);
+        read_factor(phong, "mirror", {&m_.mirror.x, 3}, 1);
         read_texture(phong, "diffuseTexture", TextureSlot::kBaseColor);
     }
 

@@ -22,8 +22,8 @@ void read_sheen(GltfDocument& d, const Json& json, Material& m) {
 }
 
 void read_transmission(GltfDocument& d, const Json& json, Material& m) {
-    read_factor(d, json, "transmissionFactor", m.transmission.strength);
-    read_texture(d, json, "transmissionTexture", m.transmission.texture);
+    read_factor(d, json, "transmissionFactor", m.transmission);
+    read_texture(d, json, "transmissionTexture", m.texture(TextureSlot::kTransmission));
 }
 
 void read_volume(GltfDocument& d, const Json& json, Material& m) {
@@ -31,6 +31,13 @@ void read_volume(GltfDocument& d, const Json& json, Material& m) {
     read_factor(d, json, "thicknessFactor", v.thickness, kNoMaximum);
     read_texture(d, json, "thicknessTexture", v.thickness_texture);
     read_factor(d, json, "attenuationColor", v.attenuation_color);
+    if (const std::optional<Json> ours = find_extension(json, "TESSERA_volume")) {
+        constexpr float kMost = 1000;
+        const float priority = ours->number_or("priority", 0);
+        if (!(priority >= -kMost && priority <= kMost && priority == static_cast<float>(static_cast<int>(priority))))
+            ours->fail("a priority is a whole number of -1000 to 1000");
+        v.priority = static_cast<int>(priority);
+    }
     const std::optional<Json> distance = json.find("attenuationDistance");
     if (!distance) return;
     if (const float metres = distance->number(); metres > 0)

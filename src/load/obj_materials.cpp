@@ -177,20 +177,24 @@ void ObjMaterials::set_highlight(const MtlMaterial& m, int number) {
     material.texture(TextureSlot::kSpecular) = texture_of(combined(kNone, shininess, channel, 3), m.map_shininess);
 }
 
-// Illumination models 4, 6, 7 and 9 are those of glass: what passes has the colour Tf and is bent by Ni. Elsewhere
-// writers give Ni without a meaning.
+// Illumination models 3 to 7 mirror by rays, as much as Ks says; 4, 6, 7 and 9 are those of glass: what passes has the
+// colour Tf and is bent by Ni. Elsewhere writers give Ni without a meaning.
 void ObjMaterials::set_glass(const MtlMaterial& m, int number) {
-    if (m.illumination != 4 && m.illumination != 6 && m.illumination != 7 && m.illumination != 9) return;
     Material& material = scene_.materials[static_cast<std::size_t>(number)];
-    warn_once("glass (illum 4, 6, 7, 9) is read, but not drawn yet");
+    if (m.illumination >= 3 && m.illumination <= 7 && material.model == ShadingModel::kBlinnPhong)
+        material.mirror = {std::clamp(m.specular.x, 0.0f, 1.0f), std::clamp(m.specular.y, 0.0f, 1.0f),
+                           std::clamp(m.specular.z, 0.0f, 1.0f)};
+    if (m.illumination != 4 && m.illumination != 6 && m.illumination != 7 && m.illumination != 9) return;
+    // Only 6 and 7 refract; any thickness says that there is a volume.
+    if (m.illumination == 6 || m.illumination == 7) material.volume.thickness = 1;
     material.ior = std::max(m.ior, 1.0f);
-    material.transmission.strength = std::clamp(std::max({m.filter.x, m.filter.y, m.filter.z}), 0.0f, 1.0f);
+    material.transmission = std::clamp(std::max({m.filter.x, m.filter.y, m.filter.z}), 0.0f, 1.0f);
     // The Phong models have no other use for the base colour, which is the colour of what passes.
-    if (material.model == ShadingModel::kBlinnPhong && material.transmission.strength > 0)
+    if (material.model == ShadingModel::kBlinnPhong && material.transmission > 0)
         for (const auto& [to, from] :
              {std::pair(&material.base_color.x, m.filter.x), std::pair(&material.base_color.y, m.filter.y),
               std::pair(&material.base_color.z, m.filter.z)})
-            *to = std::clamp(from, 0.0f, 1.0f) / material.transmission.strength;
+            *to = std::clamp(from, 0.0f, 1.0f) / material.transmission;
 }
 
 TextureRef ObjMaterials::texture(const MtlTexture& t) {

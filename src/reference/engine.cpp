@@ -14,10 +14,15 @@ SamplePosition position(const Visibility& v, std::size_t pixel, SamplePosition o
 
 }  // namespace
 
-ReferenceEngine::ReferenceEngine(const Frame& frame, const ShadingContext& context, bool tracing, bool shadows)
+ReferenceEngine::ReferenceEngine(const Frame& frame, const ShadingContext& context, bool tracing)
     : frame_(frame), context_(context), sampler_(frame, context) {
     if (tracing) bvh_ = std::make_unique<Bvh>(frame, frame.triangle_count <= kBruteForce);
-    if (tracing && shadows) shadows_ = std::make_unique<ShadowCaster>(frame, *bvh_, context);
+}
+
+ReferenceEngine::ReferenceEngine(const Frame& frame, const ShadingContext& context,
+                                 const std::optional<ReferenceTransport>& transport)
+    : ReferenceEngine(frame, context, true) {
+    if (transport) light_ = std::make_unique<LightTracerReference>(frame, *bvh_, context, *transport);
 }
 
 Visibility ReferenceEngine::see(SamplePosition offset, const RunControl& control) const {
@@ -25,18 +30,20 @@ Visibility ReferenceEngine::see(SamplePosition offset, const RunControl& control
 }
 
 ShadedPoint<float> ReferenceEngine::shade_triangle(std::uint32_t triangle, SamplePosition at) {
+    if (light_) return light_->shade(triangle, at, sampler_);
     const SurfacePoint<float> point = sampler_.point(triangle, at);
-    return shade(context_, sampler_.material(triangle), point, [&](int, const LightSample<float>& light) {
-        return shadows_ ? shadows_->visible(point, triangle, light) : 1.0f;
-    });
+    return shade(context_, sampler_.material(triangle), point,
+                 [](int, const LightSample<float>&) { return Unshadowed{}; });
 }
 
 SampleColor ReferenceEngine::shade_sample(const Visibility& visibility, std::size_t pixel, SamplePosition offset,
                                           const Fragment* transparent, const Fragment* transparent_end) {
     const SamplePosition at = position(visibility, pixel, offset);
     SampleColor c{{0, 0, 0}, 0};
-    if (const std::uint32_t triangle = visibility.triangle[pixel]; triangle != 0)
-        c = {shade_triangle(triangle - 1, at).radiance, 1.0f};
+    if (const std::uint32_t triangle = visibility.triangle[pixel]; triangle != 0) {
+        const ShadedPoint<float> s = shade_triangle(triangle - 1, at);
+        c = {s.radiance, light_ ? s.alpha : 1.0f};
+    }
     for (; transparent != transparent_end; ++transparent) {
         const ShadedPoint<float> s = shade_triangle(transparent->triangle, at);
         c.premultiplied = s.radiance * s.alpha + c.premultiplied * (1.0f - s.alpha);

@@ -2,10 +2,12 @@
 // Single-threaded; one object per frame.
 #pragma once
 
+#include "reference/light_tracer.h"
 #include "reference/rasterizer.h"
 #include "reference/raycaster.h"
 
 #include <memory>
+#include <optional>
 
 namespace tessera {
 
@@ -17,8 +19,11 @@ struct SampleColor {
 
 class ReferenceEngine {
   public:
-    // Both must outlive the engine. A tracing engine builds its hierarchy here.
-    ReferenceEngine(const Frame& frame, const ShadingContext& context, bool tracing, bool shadows);
+    // Both must outlive the engine.
+    ReferenceEngine(const Frame& frame, const ShadingContext& context) : ReferenceEngine(frame, context, false) {}
+    // A tracing engine; it builds its hierarchy here. Light is traced where there are settings for it.
+    ReferenceEngine(const Frame& frame, const ShadingContext& context,
+                    const std::optional<ReferenceTransport>& transport);
 
     Visibility see(SamplePosition offset, const RunControl& control) const;
 
@@ -30,13 +35,14 @@ class ReferenceEngine {
     SurfaceSampler& sampler() { return sampler_; }
 
   private:
+    ReferenceEngine(const Frame& frame, const ShadingContext& context, bool tracing);
     ShadedPoint<float> shade_triangle(std::uint32_t triangle, SamplePosition at);
 
     const Frame& frame_;
     const ShadingContext& context_;
     SurfaceSampler sampler_;
     std::unique_ptr<Bvh> bvh_;
-    std::unique_ptr<ShadowCaster> shadows_;
+    std::unique_ptr<LightTracerReference> light_;
 };
 
 }  // namespace tessera

@@ -64,27 +64,4 @@ Visibility cast_rays(const Frame& frame, const Bvh& bvh, const ShadingContext& c
     return out;
 }
 
-float ShadowCaster::visible(const SurfacePoint<float>& point, std::uint32_t triangle, const LightSample<float>& light) {
-    const Vec3T<float>& p = point.position;
-    const Vec3T<float>& l = light.to_light;
-    // Start off the surface, on the light's side of it, by a step in proportion to the coordinates'
-    // size, in which the rounding of the position is measured.
-    const float scale = std::max({std::fabs(p.x), std::fabs(p.y), std::fabs(p.z)});
-    const float side = dot(point.geometric_normal, l) >= 0.0f ? 1.0f : -1.0f;
-    const Vec3T<float> start = p + point.geometric_normal * (side * 2e-5f * scale);
-    const CastRay ray{{start.x, start.y, start.z}, {l.x, l.y, l.z}};
-    bool blocked = false;
-    bvh_.traverse(ray, 0.0, static_cast<double>(light.distance) * (1 - 1e-5), [&](const RayHit& hit, double t_max) {
-        // Points and lines face the camera, not the light, and cast no shadows.
-        if (hit.triangle == triangle || sampler_.instance(hit.triangle).mesh.is_stroke()) return t_max;
-        const MaterialView& material = sampler_.material(hit.triangle);
-        if (material.alpha_mode == AlphaMode::kBlend) return t_max;
-        if (material.alpha_mode == AlphaMode::kMask && sampler_.alpha(hit.triangle, hit.b) < material.alpha_cutoff)
-            return t_max;
-        blocked = true;
-        return -1.0;
-    });
-    return blocked ? 0.0f : 1.0f;
-}
-
 }  // namespace tessera

@@ -150,6 +150,13 @@ TransportSettings transport_settings(const RenderOptions& options, const FilmVie
     return settings;
 }
 
+ReferenceTransport reference_transport(const RenderOptions& options, const FilmView& film) {
+    const TransportSettings s = transport_settings(options, film);
+    ReferenceTransport t{s.shadows, s.bounces, s.max_depth, s.least, {}};
+    std::copy_n(s.background, 3, t.background);
+    return t;
+}
+
 RasterSettings raster_settings(const RenderOptions& options, const FilmView& film, const RunControl& control) {
     RasterSettings settings;
     settings.samples = sample_positions(options);

@@ -5,9 +5,10 @@
 
 #include "geometry/strokes.h"
 #include "raster/engine.h"
+#include "reference/light_tracer.h"
 #include "reference/visibility.h"
-#include "trace/engine.h"
 #include "shading/film.h"
+#include "trace/engine.h"
 
 #include <mutex>
 #include <vector>
@@ -31,6 +32,7 @@ bool is_parallel(Engine engine);
 bool traces_shadows(const RenderOptions& options);
 bool traces_bounces(const RenderOptions& options);
 TransportSettings transport_settings(const RenderOptions& options, const FilmView& film);
+ReferenceTransport reference_transport(const RenderOptions& options, const FilmView& film);
 
 // The tile rasterizer's settings for all samples, under `control`.
 RasterSettings raster_settings(const RenderOptions& options, const FilmView& film, const RunControl& control);

@@ -124,12 +124,14 @@ void Renderer::Impl::see_other(const Shot& shot, const Watchdog& watchdog, Other
                     raster_settings(options, shading.film(options), watchdog.control(0, 0)), targets, arena);
         return;
     }
-    ReferenceEngine engine(other.frame, shading.context(), options.engine == Engine::kReferenceTrace, false);
+    ReferenceEngine engine = options.engine == Engine::kReferenceTrace
+                                 ? ReferenceEngine(other.frame, shading.context(), std::nullopt)
+                                 : ReferenceEngine(other.frame, shading.context());
     take_labels(engine, other.frame, watchdog.control(0, 0), targets);
 }
 
-// The engines of tiles: visibility, shading and film inside each tile, light by rays where it is traced. With a filter that is wider than
-// the pixel, linear pictures of one sample each, and the film after the last of them.
+// The engines of tiles: visibility, shading and film inside each tile, light by rays where it is traced. With a filter
+// that is wider than the pixel, linear pictures of one sample each, and the film after the last of them.
 void Renderer::Impl::draw_tiles(const Watchdog& watchdog, Stopwatch& watch, RenderResult& result) {
     const PictureTargets targets = make_targets(result);
     RasterSettings settings = raster_settings(options, shading.film(options), watchdog.control(0, 1));
@@ -181,7 +183,9 @@ void Renderer::Impl::draw_reference(const Watchdog& watchdog, Stopwatch& watch, 
     const bool tracing = options.engine == Engine::kReferenceTrace;
     if (tracing && !is_square(frame.projection))
         throw Error(ErrorCode::kUsage, "reference-trace needs a picture that is square to the camera's axes");
-    ReferenceEngine engine(frame, shading.context(), tracing, traces_shadows(options));
+    ReferenceEngine engine =
+        tracing ? ReferenceEngine(frame, shading.context(), reference_transport(options, shading.film(options)))
+                : ReferenceEngine(frame, shading.context());
     const PictureTargets targets = make_targets(result);
     watch.phase("build");
 

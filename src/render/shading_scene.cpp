@@ -24,6 +24,29 @@ void copy3(const Vec3& v, float scale, float* out) {
     out[2] = v.z * scale;
 }
 
+// What traced light does at the surface and below it.
+void set_transport(const Material& m, bool textbook, MaterialView& v) {
+    copy3(m.mirror, 1, v.mirror);
+    v.transmission = m.transmission;
+    if (textbook) copy3({m.base_color.x, m.base_color.y, m.base_color.z}, 1, v.tint);
+    v.thin = !(m.volume.thickness > 0);
+    v.priority = m.volume.priority;
+    // An infinite index is a mirror, which nothing enters. KHR_materials_dispersion: the indices of blue and red light
+    // differ by (ior - 1) / V, where V is the Abbe number 20 / dispersion.
+    const double ior = m.ior == 0 ? 1e6 : std::max(static_cast<double>(m.ior), 1.0);
+    const double spread = (ior - 1) * static_cast<double>(m.dispersion) / 40;
+    for (int i = 0; i < 3; ++i) v.ior[i] = static_cast<float>(std::max(ior + (i - 1) * spread, 1.0));
+    if (!m.volume.attenuation_distance) return;
+    constexpr double kMost = 1e9;  // per metre
+    const float color[3] = {m.volume.attenuation_color.x, m.volume.attenuation_color.y, m.volume.attenuation_color.z};
+    for (int i = 0; i < 3; ++i)
+        v.absorption[i] =
+            static_cast<float>(color[i] > 0 ? std::min(-math::log(static_cast<double>(color[i])) /
+                                                           static_cast<double>(*m.volume.attenuation_distance),
+                                                       kMost)
+                                            : kMost);
+}
+
 MaterialView convert(const Material& m) {
     MaterialView v{};
     v.model = m.model;
@@ -54,6 +77,7 @@ MaterialView convert(const Material& m) {
     copy3(m.diffuse, 1, v.diffuse);
     copy3(m.specular, 1, v.specular);
     v.shininess = m.shininess;
+    set_transport(m, textbook, v);
     return v;
 }
 

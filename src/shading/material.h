@@ -31,10 +31,11 @@ struct MaterialView {
     float shininess;
     // Of traced light: kr of the textbooks; the part that enters instead of being scattered, and how it goes on.
     float mirror[3] = {0, 0, 0}, transmission = 0;
-    bool thin = true;                        // light that enters leaves at once, as through a pane
-    float ior[3] = {1, 1, 1};                // for red, green and blue
-    float absorption[3] = {0, 0, 0};         // per metre within
-    int priority = 0;                        // of overlapping media the highest one fills the space
+    float tint[3] = {1, 1, 1};        // of what enters, of the textbooks' materials
+    bool thin = true;                 // light that enters leaves at once, as through a pane
+    float ior[3] = {1, 1, 1};         // for red, green and blue
+    float absorption[3] = {0, 0, 0};  // per metre within
+    int priority = 0;                 // of overlapping media the highest one fills the space
     TextureInput inputs[kTextureSlots];
 
     TESSERA_INLINE const TextureInput& input(TextureSlot slot) const { return inputs[static_cast<int>(slot)]; }
@@ -88,6 +89,12 @@ TESSERA_INLINE Vec4T<F> base_color(const MaterialView& m, const SurfacePoint<F>&
 template <int kUvSets, class F>
 TESSERA_INLINE F occlusion(const MaterialView& m, const SurfacePoint<F>& s) {
     return F(1.0f) + F(m.occlusion_strength) * (read_input<kUvSets>(m, TextureSlot::kOcclusion, s).x - F(1.0f));
+}
+
+// The part of the light that enters the surface.
+template <int kUvSets = kMaxUvSets, class F>
+TESSERA_INLINE F transmission(const MaterialView& m, const SurfacePoint<F>& s) {
+    return F(m.transmission) * read_input<kUvSets>(m, TextureSlot::kTransmission, s).x;
 }
 
 // Alpha as the alpha mode sees it: 1 for opaque materials, 0 or 1 for cut-outs.

@@ -39,7 +39,7 @@ TESSERA_INLINE TracedShade<F> trace_microfacet(const ShadingContext& context, co
     const F zero(0.0f), one(1.0f);
     LobeParameters<F> p = evaluate_material<kUvSets>(m, s);
     const bool transmits = context.bounces && m.transmission > 0.0f;
-    const F entering = transmits ? F(m.transmission) * (one - p.metallic) : zero, scattered = one - entering;
+    const F entering = transmits ? transmission<kUvSets>(m, s) * (one - p.metallic) : zero, scattered = one - entering;
     const Vec3T<F> tint = p.base;
     if (transmits) p.base = p.base * scattered;
     const F sharp = context.bounces ? mirror_share(p.roughness) : zero;
@@ -80,8 +80,8 @@ TESSERA_INLINE void shade_traced(const ShadingContext& context, const MaterialVi
     if constexpr (kFamily == ShadingFamily::kMicrofacet) {
         for (int k = 0; k < Batch::kCount; ++k)
             if (batch.used(k))
-                out[k] = trace_microfacet<kUvSets>(context, m, batch.point(k), batch.eta(k), batch.inside(k), k,
-                                                   visible);
+                out[k] =
+                    trace_microfacet<kUvSets>(context, m, batch.point(k), batch.eta(k), batch.inside(k), k, visible);
     } else {
         ShadedPoint<F> shaded[Batch::kCount];
         shade_as<kFamily, kUvSets>(context, m, batch, visible, shaded);
@@ -97,7 +97,7 @@ TESSERA_INLINE void shade_traced(const ShadingContext& context, const MaterialVi
                 const F whole = refracted(s.view, s.normal, s.geometric_normal, batch.eta(k)).reflected;
                 const F kept = select(whole == F(1.0f), F(m.transmission), F(0.0f));
                 out[k].reflected = out[k].reflected + Vec3T<F>::splat(kept);
-                out[k].entering = Vec3T<F>::splat(F(m.transmission) - kept);
+                out[k].entering = Vec3T<F>::load(m.tint) * (F(m.transmission) - kept);
             }
         }
     }
@@ -112,10 +112,10 @@ TESSERA_INLINE Vec3T<F> straight_through(const MaterialView& m, const SurfacePoi
     Vec3T<F> entering = Vec3T<F>::splat(F(0.0f));
     if (may_transmit(m)) {
         if (family_of(m.model) == ShadingFamily::kTextbook) {
-            entering = Vec3T<F>::splat(F(m.transmission));
+            entering = Vec3T<F>::load(m.tint) * F(m.transmission);
         } else {
             const LobeParameters<F> p = evaluate_material(m, s);
-            entering = p.base * (F(m.transmission * (1.0f - m.dielectric[1])) * (one - p.metallic));
+            entering = p.base * (transmission(m, s) * F(1.0f - m.dielectric[1]) * (one - p.metallic));
         }
     }
     return Vec3T<F>::splat(one - alpha) + entering * alpha;

@@ -73,8 +73,9 @@ void Group::build(Arena& arena, const float* to_camera) {
         duplicates_ += static_cast<std::uint32_t>(dropped_[m].size());
         if (!dropped_[m].empty()) leave_out(key_.members[m], dropped_[m], parts_[m]);
     }
-    const bool passing = key_.kind == GroupKind::kStrokes || key_.kind == GroupKind::kBaked;
-    scene_ = device_.new_scene(passing ? RTC_BUILD_QUALITY_LOW : RTC_BUILD_QUALITY_MEDIUM,
+    // Embree refits nothing but geometries of low-quality scenes, whose first build is as good as others.
+    const bool lasting = key_.kind == GroupKind::kStatic;
+    scene_ = device_.new_scene(lasting ? RTC_BUILD_QUALITY_MEDIUM : RTC_BUILD_QUALITY_LOW,
                                key_.kind == GroupKind::kDeformed ? RTC_SCENE_FLAG_DYNAMIC : RTC_SCENE_FLAG_NONE);
     mask_ = 0;
     for (std::uint32_t m = 0; m < parts_.size(); ++m) {

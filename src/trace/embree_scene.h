@@ -45,8 +45,9 @@ class EmbreeScene {
     EmbreeScene& operator=(const EmbreeScene&) = delete;
 
     // Brings the hierarchies to a frame, whose meshes are read until the next update: what is new is built, what
-    // changed its shape is refitted, the rest stays. `classes` by instance. Runs in the arena, isolated from the host's
-    // tasks.
+    // changed its shape is refitted, the rest stays. Meshes are known by their addresses and lengths, so another scene
+    // needs another EmbreeScene. After an error nothing is hit until the next update. `classes` by instance. Runs in
+    // the arena, isolated from the host's tasks.
     void update(const Frame& frame, const std::vector<TraceClass>& classes, Arena& arena);
 
     const BuildStatistics& statistics() const;
@@ -57,7 +58,9 @@ class EmbreeScene {
     // t_near .. t_far, both finite or t_far infinite. Undecided surfaces are no obstacles: those in front of it, and
     // maybe some behind, are appended to `sheer` in no order and maybe twice; without `sheer` they are not looked for.
     // `coherent`: the rays lie close together. `from_camera`: seen_inside does not count. Lanes whose numbers are not
-    // finite, or whose direction is zero, hit nothing. W is 1, 4, 8 or 16. Any number of threads at a time.
+    // finite or beyond 1.8e18, whose t_near is negative, or whose direction is zero, hit nothing; other lanes are not
+    // touched. Rays cannot pass between triangles that share an edge, but some of those at the very vertex can. The
+    // normal stays in the hierarchy's space. W is 1, 4, 8 or 16. Any number of threads at a time.
     template <int W>
     void nearest(const int* valid, RayPacket<W>& rays, bool coherent, bool from_camera,
                  std::vector<SheerHit>* sheer) const;

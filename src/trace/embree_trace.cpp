@@ -62,7 +62,7 @@ constexpr bool same_layout() {
            offsetof(Ours, instance) == hit + offsetof(Hit, instID);
 }
 static_assert(same_layout<1>() && same_layout<4>() && same_layout<8>() && same_layout<16>());
-static_assert(kNoHit == RTC_INVALID_GEOMETRY_ID);
+static_assert(kNoHit == RTC_INVALID_GEOMETRY_ID && kNoHit == ~0u);
 
 template <int W>
 struct alignas(64) Lanes {  // -1: traced, 0: not
@@ -130,15 +130,22 @@ void filter_hits(const RTCFilterFunctionNArguments* args) {
 template <int W>
 bool prepare(const int* valid, RayPacket<W>& r, Lanes<W>& lanes) {
     constexpr float kMost = 1.844e18f;  // Embree's own limit, by which squares stay finite
+    // Integers rather than bool, so that compilers see vectors.
+    int on[W];
+    std::copy_n(valid, W, on);
+    for (int i = 0; i < W; ++i) {
+        const auto in_range = [](float x) { return -static_cast<int>(std::fabs(x) <= kMost); };
+        const auto not_zero = [](float x) { return -static_cast<int>(x != 0.0f); };
+        on[i] &= in_range(r.org_x[i]) & in_range(r.org_y[i]) & in_range(r.org_z[i]);
+        on[i] &= in_range(r.dir_x[i]) & in_range(r.dir_y[i]) & in_range(r.dir_z[i]);
+        on[i] &= not_zero(r.dir_x[i]) | not_zero(r.dir_y[i]) | not_zero(r.dir_z[i]);
+        on[i] &= -static_cast<int>(r.t_near[i] >= 0.0f) & -static_cast<int>(r.t_near[i] <= FLT_MAX) &
+                 -static_cast<int>(r.t_far[i] >= r.t_near[i]);
+    }
     int any = 0;
     for (int i = 0; i < W; ++i) {
-        const bool usable = (std::fabs(r.org_x[i]) <= kMost) & (std::fabs(r.org_y[i]) <= kMost) &
-                            (std::fabs(r.org_z[i]) <= kMost) & (std::fabs(r.dir_x[i]) <= kMost) &
-                            (std::fabs(r.dir_y[i]) <= kMost) & (std::fabs(r.dir_z[i]) <= kMost) &
-                            ((r.dir_x[i] != 0.0f) | (r.dir_y[i] != 0.0f) | (r.dir_z[i] != 0.0f)) &
-                            (r.t_near[i] >= 0.0f) & (r.t_near[i] <= FLT_MAX) & (r.t_far[i] >= r.t_near[i]);
-        lanes.on[i] = usable ? valid[i] : 0;
-        any |= lanes.on[i];
+        lanes.on[i] = on[i];
+        any |= on[i];
     }
     for (int i = 0; i < W; ++i) {
         r.time[i] = 0.0f;
@@ -231,11 +238,12 @@ void EmbreeScene::nearest(const int* valid, RayPacket<W>& rays, bool coherent, b
     const Impl& impl = *impl_;
     Lanes<W> lanes;
     const bool any = prepare(valid, rays, lanes);
-    for (int i = 0; i < W; ++i) {
-        rays.triangle[i] = valid[i] ? kNoHit : rays.triangle[i];
-        rays.geometry[i] = valid[i] ? kNoHit : rays.geometry[i];
-        rays.instance[i] = valid[i] ? kNoHit : rays.instance[i];
-    }
+    // kNoHit is all ones.
+    std::uint32_t nothing[W];
+    for (int i = 0; i < W; ++i) nothing[i] = static_cast<std::uint32_t>(valid[i]);
+    for (int i = 0; i < W; ++i) rays.triangle[i] |= nothing[i];
+    for (int i = 0; i < W; ++i) rays.geometry[i] |= nothing[i];
+    for (int i = 0; i < W; ++i) rays.instance[i] |= nothing[i];
     if (!any || !impl.traced) return;
     TraceContext context(impl, coherent);
     context.checks = checks_for(from_camera);
@@ -245,7 +253,7 @@ void EmbreeScene::nearest(const int* valid, RayPacket<W>& rays, bool coherent, b
     intersect(lanes, rays, context);
 
     // Most hits are on the front of something solid and stand. The rest is traced once more, now with the filter,
-    // which costs more than a whole ray where every hit has to go through it.
+    // which all hits would otherwise have to go through.
     Lanes<W> again;
     int more = 0;
     for (int i = 0; i < W; ++i) {

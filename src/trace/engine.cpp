@@ -5,7 +5,6 @@
 #include "trace/waves.h"
 
 #include <algorithm>
-#include <cmath>
 #include <mutex>
 
 namespace tessera {
@@ -19,20 +18,6 @@ TraceClass class_of(const InstanceView& instance, const MaterialView& material) 
     c.culled = !material.double_sided;
     c.seen_inside = transmits && !material.thin;
     return c;
-}
-
-// A bound of the coordinates in camera space that an instance's points are the sums of.
-float coordinate_size(const InstanceView& instance, const Bounds3& box) {
-    const float most[3] = {std::max(std::fabs(box.min.x), std::fabs(box.max.x)),
-                           std::max(std::fabs(box.min.y), std::fabs(box.max.y)),
-                           std::max(std::fabs(box.min.z), std::fabs(box.max.z))};
-    float size = 0;
-    for (int r = 0; r < 3; ++r) {
-        const float* m = instance.object_to_camera + 4 * r;
-        size = std::max(
-            size, std::fabs(m[0]) * most[0] + std::fabs(m[1]) * most[1] + std::fabs(m[2]) * most[2] + std::fabs(m[3]));
-    }
-    return size;
 }
 
 int choose_tile_side(const PictureSettings& settings, const ProjectionView& picture) {
@@ -66,7 +51,7 @@ void LightTracer::begin(const Frame& frame, const ShadingContext& shading, const
         const InstanceView& instance = frame.instances[i];
         classes.push_back(class_of(instance, shading.materials[instance.material]));
         t.simple = t.simple && classes.back().mask == kMeetsSolid;
-        t.instance_size.push_back(coordinate_size(instance, frame.prepared[i]->bounds));
+        t.instance_size.push_back(largest_coordinate(instance, frame.prepared[i]->bounds));
     }
     state_->scene.update(frame, classes, arena);
     t.scene = &state_->scene;

@@ -1,6 +1,4 @@
-// Surfaces that let light through: which media lie on their two sides, and which rays their points send on. Of
-// overlapping media the one of the highest priority fills the space (Schmidt and Budge 2002, "Simple nested dielectrics
-// in ray traced images").
+// Surfaces that let light through: which media lie on their two sides, and which rays their points send on.
 #include "tile/tile.h"
 #include "trace/waves.h"
 
@@ -11,38 +9,7 @@ namespace {
 
 constexpr int kMostPasses = 64;  // of straight rays
 
-// The media beyond a surface of material m.
-Media beyond(Media media, std::uint32_t m, bool entering) {
-    if (entering) {
-        if (media.count < Media::kMost) media.material[media.count++] = static_cast<std::uint16_t>(m);
-        return media;
-    }
-    for (int i = media.count - 1; i >= 0; --i) {
-        if (media.material[i] != m) continue;
-        std::copy(media.material + i + 1, media.material + media.count, media.material + i);
-        --media.count;
-        break;
-    }
-    return media;
-}
-
-bool is_within(const Media& media, std::uint32_t m) {
-    return std::find(media.material, media.material + media.count, m) != media.material + media.count;
-}
-
-float ior_of(std::uint32_t medium, int channel, const MaterialView* materials) {
-    return medium == kNoMedium ? 1.0f : materials[medium].ior[channel];
-}
-
 }  // namespace
-
-std::uint32_t current_medium(const Media& media, const MaterialView* materials) {
-    std::uint32_t current = kNoMedium;
-    for (int i = 0; i < media.count; ++i)
-        if (current == kNoMedium || materials[media.material[i]].priority >= materials[current].priority)
-            current = media.material[i];
-    return current;
-}
 
 // Sets the indices of refraction, and finds the points that are no boundary at all.
 void WaveShader::cross(const TileTask& task, Wave& wave) {
@@ -50,23 +17,12 @@ void WaveShader::cross(const TileTask& task, Wave& wave) {
     std::fill_n(clear_.reserve(wave.point_count + kMaxLanes), wave.point_count, 0u);
     for (const PointBatch& b : wave.batches) {
         const std::uint32_t m = task.frame.instances[b.instance].material;
-        const MaterialView& material = materials[m];
-        if (!may_transmit(material)) continue;
+        if (!may_transmit(materials[m])) continue;
         for (std::uint32_t p = b.first; p < b.first + b.count; ++p) {
             const RayState& state = wave.states[wave.ray[p]];
-            std::uint32_t before = kNoMedium, after = m;
-            if (!material.thin) {
-                const bool entering = wave.points[kFacing][p] > 0.0f;
-                before = current_medium(state.media, materials);
-                // Who starts within a medium is not known to be there.
-                if (!entering && !is_within(state.media, m)) before = m;
-                after = current_medium(beyond(state.media, m, entering), materials);
-                clear_[p] = before == after ? ~0u : 0u;
-            }
-            for (int c = 0; c < 3; ++c) {
-                const int channel = state.channel == 0 ? c : state.channel - 1;
-                wave.points[kEtaR + c][p] = ior_of(before, channel, materials) / ior_of(after, channel, materials);
-            }
+            const Boundary here = boundary(state.media, m, wave.points[kFacing][p] > 0.0f, state.channel, materials);
+            clear_[p] = here.clear ? ~0u : 0u;
+            for (int c = 0; c < 3; ++c) wave.points[kEtaR + c][p] = here.eta[c];
         }
     }
 }
@@ -115,7 +71,7 @@ void WaveShader::absorb(Wave& wave) const {
     for (std::uint32_t p = 0; p < wave.point_count; ++p) {
         const std::uint32_t ray = wave.ray[p];
         if (!wave.used[p] || wave.states[ray].media.count == 0) continue;
-        const MaterialView& medium = materials[current_medium(wave.states[ray].media, materials)];
+        const MaterialView& medium = materials[wave.states[ray].media.current(materials)];
         const Vec3T<float> left = transmittance(Vec3T<float>::load(medium.absorption), wave.distance[p]);
         const float part[3] = {left.x, left.y, left.z};
         for (std::size_t c = 0; c < 3; ++c) wave.kept[c][ray] = part[c];
@@ -136,7 +92,7 @@ RayState WaveShader::next_state(const TileTask& task, const Wave& from, std::uin
         return state;
     }
     const std::uint32_t m = task.frame.instances[from.instance[from.ray[point]]].material;
-    if (!scene_->shading->materials[m].thin) state.media = beyond(state.media, m, from.points[kFacing][point] > 0.0f);
+    if (!scene_->shading->materials[m].thin) state.media = state.media.beyond(m, from.points[kFacing][point] > 0.0f);
     ++(clear_[point] ? state.passes : state.depth);
     if (job.channels[0] != job.channels[1] || job.channels[1] != job.channels[2])
         state.channel = static_cast<std::uint8_t>(job.channels[0] > 0 ? 1 : job.channels[1] > 0 ? 2 : 3);

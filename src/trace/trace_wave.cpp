@@ -24,7 +24,7 @@ void WaveShader::miss(Wave& wave, std::uint32_t ray) const {
             Vec3T<float>{wave.rays[kDirectionX][ray], wave.rays[kDirectionY][ray], wave.rays[kDirectionZ][ray]});
         light[0] = around.x, light[1] = around.y, light[2] = around.z;
     }
-    const std::uint32_t medium = current_medium(state.media, scene_->shading->materials);
+    const std::uint32_t medium = state.media.current(scene_->shading->materials);
     for (std::size_t c = 0; c < 3; ++c) {
         // The way through a medium without an end.
         const bool dark = medium != kNoMedium && scene_->shading->materials[medium].absorption[c] > 0.0f;

@@ -2,6 +2,7 @@
 // back. Memory only; waves.cpp says what happens to it.
 #pragma once
 
+#include "shading/media.h"
 #include "tile/buffer.h"
 #include "trace/wave_data.h"
 
@@ -9,17 +10,6 @@
 #include <vector>
 
 namespace tessera {
-
-inline constexpr std::uint32_t kNoMedium = 0xffffu;
-
-// The media that a point lies in, in the order in which they were entered.
-struct Media {
-    static constexpr int kMost = 6;  // more are not kept
-    std::uint16_t material[kMost];
-    std::uint16_t count = 0;
-};
-// The one that fills the space, or kNoMedium.
-std::uint32_t current_medium(const Media& media, const MaterialView* materials);
 
 // What a ray carries besides its numbers where surfaces let light through.
 struct RayState {

@@ -2,7 +2,7 @@
 find_package(simdjson REQUIRED)
 target_link_libraries(${target} PRIVATE simdjson::simdjson)
 # The workloads of `tessera bench`, which are compared with bench/workloads.h.
-foreach(name workloads workload_meshes parse)
+foreach(name workloads workload_meshes traced_workloads parse)
   target_sources(${target} PRIVATE ${PROJECT_SOURCE_DIR}/src/cli/${name}.cpp)
 endforeach()
 find_package(Python3 COMPONENTS Interpreter)

@@ -79,11 +79,10 @@ TEST(Duplicates, AreThoseOfTheDefinition) {
             }
             for (std::uint32_t i = random.below(80); i > 0; --i) {
                 std::uint32_t v[3];
-                do {
-                    for (std::uint32_t& k : v) k = random.below(vertices);
-                } while (same_point(&soup.positions[3 * v[0]], &soup.positions[3 * v[1]]) ||
-                         same_point(&soup.positions[3 * v[1]], &soup.positions[3 * v[2]]) ||
-                         same_point(&soup.positions[3 * v[2]], &soup.positions[3 * v[0]]));
+                for (std::uint32_t& k : v) k = random.below(vertices);
+                const float* p[3];
+                for (std::size_t k = 0; k < 3; ++k) p[k] = &soup.positions[3 * std::size_t{v[k]}];
+                if (same_point(p[0], p[1]) || same_point(p[1], p[2]) || same_point(p[2], p[0])) continue;
                 soup.triangles.insert(soup.triangles.end(), v, v + 3);
             }
             soup.front = static_cast<std::uint8_t>(random.below(4));
