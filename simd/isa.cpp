@@ -99,16 +99,19 @@ bool isa_supported(Isa isa, const CpuFeatures& cpu) {
     return false;
 }
 
-void require_isa(Isa isa, const CpuFeatures& cpu) {
-    if (isa_supported(isa, cpu)) return;
-    std::string supported;
+void require_isa(Isa isa, const CpuFeatures& cpu, IsaBits built) {
+    const auto is_built = [built](Isa i) { return i == Isa::kAuto || (built & isa_bits(i)) != 0; };
+    if (is_built(isa) && isa_supported(isa, cpu)) return;
+    std::string usable;
     for (const Isa other : kIsas)
-        if (isa_supported(other, cpu)) supported += (supported.empty() ? "" : ", ") + std::string(name(other));
+        if (is_built(other) && isa_supported(other, cpu))
+            usable += (usable.empty() ? "" : ", ") + std::string(name(other));
+    const char* lacking = is_built(isa) ? "processor lacks" : "build has no kernels for";
     throw Error(ErrorCode::kUsage,
-                std::string("this processor lacks the instruction set ") + name(isa) + "; it has " + supported);
+                std::string("this ") + lacking + " the instruction set " + name(isa) + "; it has " + usable);
 }
 
-bool isa_supported(Isa isa) { return isa_supported(isa, this_cpu()); }
+bool isa_supported(Isa isa) { return isa_built(isa) && isa_supported(isa, this_cpu()); }
 
 Isa best_isa() {
     Isa best = Isa::kScalar;

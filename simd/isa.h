@@ -1,5 +1,6 @@
-// Detection of instruction sets for <tessera/isa.h>, and the tables by which a stage of the renderer
-// calls its kernels. There is no process-wide switch: two renderers may use two instruction sets.
+// Detection of instruction sets for <tessera/isa.h>, those that this build has kernels for, and the tables by which
+// a stage of the renderer calls its kernels. There is no process-wide switch: two renderers may use two instruction
+// sets.
 #pragma once
 
 #include <tessera/isa.h>
@@ -14,10 +15,20 @@ struct CpuFeatures {
     std::uint64_t xcr0 = 0;  // register states that the operating system saves
 };
 CpuFeatures read_cpu_features();
-// The same questions as those of <tessera/isa.h>, for a given processor.
+// Whether a given processor can run it, built or not.
 bool isa_supported(Isa isa, const CpuFeatures& cpu);
-// Throws kUsage unless it is supported, naming it and what the processor has.
-void require_isa(Isa isa, const CpuFeatures& cpu);
+
+// A set of instruction sets: bit 1 << Isa.
+using IsaBits = std::uint32_t;
+template <class... Isas>
+constexpr IsaBits isa_bits(Isas... isas) {
+    return (... | (IsaBits{1} << static_cast<unsigned>(isas)));
+}
+// Those that kernels are compiled for: TESSERA_ISAS of cmake/TesseraKernels.cmake.
+inline constexpr IsaBits kBuiltIsas = isa_bits(TESSERA_BUILT_ISAS);
+constexpr bool isa_built(Isa isa) { return isa == Isa::kAuto || (kBuiltIsas & isa_bits(isa)) != 0; }
+// Throws kUsage unless it is built and the processor has it, naming it and what there is.
+void require_isa(Isa isa, const CpuFeatures& cpu, IsaBits built = kBuiltIsas);
 
 }  // namespace tessera
 
@@ -30,8 +41,8 @@ void require_isa(Isa isa, const CpuFeatures& cpu);
 //         return kKernels;
 //     }
 //     }
-// and the renderer calls blend_kernels(isa).blend(...) with a resolved, supported `isa`.
-#if defined(__x86_64__)
+// and the renderer calls blend_kernels(isa).blend(...) with a resolved, supported `isa`. What is not built is
+// discarded before it is called, and so need not be linked.
 #define TESSERA_KERNELS(Table, function)                                   \
     namespace scalar {                                                     \
     const Table& function();                                               \
@@ -46,23 +57,12 @@ void require_isa(Isa isa, const CpuFeatures& cpu);
     const Table& function();                                               \
     }                                                                      \
     inline __attribute__((always_inline)) const Table& function(Isa isa) { \
-        switch (isa) {                                                     \
-            case Isa::kSse4:                                               \
-                return sse4::function();                                   \
-            case Isa::kAvx2:                                               \
-                return avx2::function();                                   \
-            case Isa::kAvx512:                                             \
-                return avx512::function();                                 \
-            default:                                                       \
-                return scalar::function();                                 \
-        }                                                                  \
+        if constexpr (isa_built(Isa::kAvx512))                             \
+            if (isa == Isa::kAvx512) return avx512::function();            \
+        if constexpr (isa_built(Isa::kAvx2))                               \
+            if (isa == Isa::kAvx2) return avx2::function();                \
+        if constexpr (isa_built(Isa::kSse4))                               \
+            if (isa == Isa::kSse4) return sse4::function();                \
+        return scalar::function();                                         \
     }                                                                      \
     static_assert(true)
-#else
-#define TESSERA_KERNELS(Table, function)                                                            \
-    namespace scalar {                                                                              \
-    const Table& function();                                                                        \
-    }                                                                                               \
-    inline __attribute__((always_inline)) const Table& function(Isa) { return scalar::function(); } \
-    static_assert(true)
-#endif

@@ -43,13 +43,13 @@ inline vec3 radiance(const Work& work, vec3 origin, vec3 direction, int bounces,
     const vec3 normal = facing_normal(query);
     const vec3 point = origin + query.ray.tfar * direction + kOffset * normal;
     const vec3 to_light = work.frame.light - point;
-    const float cosine = glm::dot(normal, to_light) / glm::length(to_light);
+    const float facing = glm::dot(normal, to_light);
     float light = kAmbient;
-    if (cosine > 0) {
+    if (facing > 0) {
         RTCRay shadow = single_ray(point, to_light, 0, 1);
         rtcOccluded1(work.scene, &context, &shadow);
         ++rays;
-        if (shadow.tfar >= 0) light += kDiffuse * cosine;
+        if (shadow.tfar >= 0) light += kDiffuse * facing / glm::length(to_light);
     }
     const vec3 color = light * kColors[query.hit.geomID];
     if (bounces == 0) return color;

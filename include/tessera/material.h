@@ -64,16 +64,12 @@ struct Sheen {  // the fibres of cloth
     TextureRef color_texture, roughness_texture;  // sRGB, alpha
     friend bool operator==(const Sheen&, const Sheen&) = default;
 };
-struct Transmission {  // what passes through the surface instead of the diffuse part, coloured by base_color
-    float strength = 0;
-    TextureRef texture;  // red
-    friend bool operator==(const Transmission&, const Transmission&) = default;
-};
 struct Volume {                                 // below the surface; thickness 0: there is none, the surface is thin
     float thickness = 0;                        // metres, in the space of the mesh
     TextureRef thickness_texture;               // green
     std::optional<float> attenuation_distance;  // metres in the world, after which light has the colour; none: infinite
     Vec3 attenuation_color{1, 1, 1};
+    int priority = 0;  // where volumes overlap the highest one fills the space
     friend bool operator==(const Volume&, const Volume&) = default;
 };
 struct Anisotropy {  // highlights stretched along a direction, counter-clockwise from the tangent in radians
@@ -108,6 +104,7 @@ struct Material {
     // Lambert, Phong and Blinn-Phong (linear colours); the base-colour texture modulates ka and kd.
     Vec3 ambient{0, 0, 0}, diffuse{0.8f, 0.8f, 0.8f}, specular{0, 0, 0};  // ka, kd, ks
     float shininess = 32;                                                 // ns
+    Vec3 mirror{0, 0, 0};                                                 // kr: of light that is traced
 
     std::array<TextureRef, kTextureSlots> textures;
     TextureRef& texture(TextureSlot s) { return textures[static_cast<std::size_t>(s)]; }
@@ -115,7 +112,9 @@ struct Material {
 
     Clearcoat clearcoat;
     Sheen sheen;
-    Transmission transmission;
+    // The part of the light that enters the surface instead of being scattered, coloured by base_color: through to the
+    // other side of thin surfaces, refracted into volumes. Drawn by the engines that trace light.
+    float transmission = 0;
     Volume volume;
     Anisotropy anisotropy;
     Iridescence iridescence;

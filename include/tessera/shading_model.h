@@ -36,6 +36,7 @@ enum class TextureSlot : std::uint8_t {
     kSpecular,       // alpha: the specular strength; the shininess of the Phong models
     kSpecularColor,  // sRGB: the specular colour; ks of the Phong models. Alpha: the glossiness, where the model has
                      // one
+    kTransmission,   // red
     kCount
 };
 inline constexpr std::size_t kTextureSlots = static_cast<std::size_t>(TextureSlot::kCount);

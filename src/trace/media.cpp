@@ -30,7 +30,7 @@ void WaveShader::cross(const TileTask& task, Wave& wave) {
 // Which rays every point may send, after it was shaded.
 void WaveShader::choose_rays(const TileTask& task, Wave& wave, bool camera) {
     const MaterialView* const materials = scene_->shading->materials;
-    for (Buffer<std::uint32_t>* b : {&bounding_, &whole_, &dispersed_, &blended_})
+    for (Buffer<std::uint32_t>* b : {&bounding_, &stopped_, &whole_, &dispersed_, &blended_})
         std::fill_n(b->reserve(wave.point_count + kMaxLanes), wave.point_count, 0u);
     has_dispersed_ = has_blended_ = false;
     const auto scale = [&](std::uint32_t p, float factor) {
@@ -56,7 +56,7 @@ void WaveShader::choose_rays(const TileTask& task, Wave& wave, bool camera) {
                 for (int c = 0; c < 3; ++c) wave.points[kEtaR + c][p] = 1.0f;
             const bool may_pass = state.passes < kMostPasses, may_turn = state.depth < scene_->max_depth;
             const bool splits = disperses && state.channel == 0 && !clear;
-            if (may_turn) bounding_[p] = ~0u;
+            (may_turn ? bounding_ : stopped_)[p] = ~0u;
             if (transmits && (clear ? may_pass : may_turn)) (splits ? dispersed_ : whole_)[p] = ~0u;
             if (blends && may_pass) blended_[p] = ~0u;
             has_dispersed_ |= splits;

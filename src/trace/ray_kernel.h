@@ -99,9 +99,12 @@ inline void spawn(SpawnJob& job) {
             weight = weight * Vec3T<Float>::load(job.channels);
         }
         const Float times = load<Float>(job.points[kTimes] + at) * max(max(weight.x, weight.y), weight.z);
-        const Mask some = (load<Uint>(job.used + at) != Uint(0u)) & (times > Float(job.least));
+        const Mask used = load<Uint>(job.used + at) != Uint(0u), some = used & (times > Float(job.least));
         const std::uint32_t bits = mask_bits(some);
-        if (!bits) continue;
+        const std::uint32_t faint = mask_bits(used & (times > Float(0.0f))) & ~bits;
+        job.faint += static_cast<std::uint32_t>(__builtin_popcount(faint));
+        if (job.only_count) made += static_cast<std::uint32_t>(__builtin_popcount(bits));
+        if (!bits || job.only_count) continue;
         const Vec3T<Float> p = load3(job.points, kPositionX, at), view = load3(job.points, kViewX, at),
                            normal = load3(job.points, kNormalX, at), ng = load3(job.points, kFlatX, at);
         Vec3T<Float> direction = -view;

@@ -174,18 +174,20 @@ struct TracedShadeJob {
     std::uint32_t first, count;
 };
 
-// The rays that points send on, those that may count for at least `least`.
+// The rays that points send on, those that may count for more than `least`.
 struct SpawnJob {
     enum class Kind { kMirrored, kRefracted, kStraight };
     Kind kind;
-    int eta;  // which of kEtaR .. kEtaB; other channels than those of `channels` are not carried on
-    float channels[3];
+    bool only_count;    // what it would make
+    int eta;            // which of kEtaR .. kEtaB
+    float channels[3];  // factors on the weights
     WaveArrays points, shades;
     const std::uint32_t* used;
     std::uint32_t count;
     float least;
-    WaveArrays rays;     // out, from `made` on
-    std::uint32_t made;  // in and out
+    WaveArrays rays;      // out, from `made` on
+    std::uint32_t made;   // in and out
+    std::uint32_t faint;  // in and out: those that count for less
 };
 
 struct TraceKernels {

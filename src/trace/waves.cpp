@@ -150,8 +150,12 @@ bool WaveShader::send_on(const TileTask& task, Wave& from, Wave& to, int depth) 
     };
     using enum SpawnJob::Kind;
     if (scene_->simple) {
-        if (depth < scene_->max_depth) counters.mirrored_rays += spawn(kMirrored, from.used.data(), kEtaG, 1, 1, 1);
+        if (depth < scene_->max_depth)
+            counters.mirrored_rays += spawn(kMirrored, from.used.data(), kEtaG, 1, 1, 1);
+        else
+            count_ended(job, from.used.data(), {kMirrored});
     } else {
+        count_ended(job, stopped_.data(), {kMirrored, kRefracted});
         counters.mirrored_rays += spawn(kMirrored, bounding_.data(), kEtaG, 1, 1, 1);
         counters.refracted_rays += spawn(kRefracted, whole_.data(), kEtaG, 1, 1, 1);
         if (has_dispersed_) {
@@ -161,8 +165,21 @@ bool WaveShader::send_on(const TileTask& task, Wave& from, Wave& to, int depth) 
         }
         if (has_blended_) counters.straight_rays += spawn(kStraight, blended_.data(), kEtaG, 1, 1, 1);
     }
+    counters.ended_by_contribution += job.faint;
     to.ray_count = job.made;
     return job.made > 0;
+}
+
+// Rays that would go on but for the depth.
+void WaveShader::count_ended(SpawnJob job, const std::uint32_t* used, std::initializer_list<SpawnJob::Kind> kinds) {
+    job.only_count = true;
+    job.used = used;
+    for (float& channel : job.channels) channel = 1.0f;
+    for (const SpawnJob::Kind kind : kinds) {
+        job.kind = kind;
+        scene_->kernels->spawn(job);
+    }
+    counters.ended_by_depth += job.made;
 }
 
 // What came along the rays of a wave, to the points that they left: in their order, so mirrored light first.

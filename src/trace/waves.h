@@ -9,7 +9,7 @@
 
 #include "tile/point_shader.h"
 
-#include <array>
+#include <initializer_list>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -46,6 +46,7 @@ class WaveShader final : public PointShader {
     void take_samples(const TileTask& task, const SampleList& samples, std::uint32_t first, std::uint32_t count);
     void shade_points(const TileTask& task, Wave& wave, bool camera);
     bool send_on(const TileTask& task, Wave& from, Wave& to, int depth);
+    void count_ended(SpawnJob job, const std::uint32_t* used, std::initializer_list<SpawnJob::Kind> kinds);
     void gather(const Wave& from, Wave& to) const;
     void write(std::uint32_t first, float* const (&color)[4]) const;
     // arrange.cpp
@@ -83,7 +84,7 @@ class WaveShader final : public PointShader {
     // media.cpp
     Buffer<std::uint32_t> clear_;  // by point: it is no boundary of what fills the space
     // By point: which rays it may send; all bits or none.
-    Buffer<std::uint32_t> bounding_, whole_, dispersed_, blended_;
+    Buffer<std::uint32_t> bounding_, stopped_, whole_, dispersed_, blended_;
     bool has_dispersed_ = false, has_blended_ = false;
 };
 
