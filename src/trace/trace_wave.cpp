@@ -28,7 +28,6 @@ void WaveShader::miss(Wave& wave, std::uint32_t ray) const {
     for (std::size_t c = 0; c < 3; ++c) {
         // The way through a medium without an end.
         const bool dark = medium != kNoMedium && scene_->shading->materials[medium].absorption[c] > 0.0f;
-        wave.kept[c][ray] = 1.0f;
         wave.light[c][ray] = dark ? 0.0f : light[c];
         wave.passed[c][ray] = dark ? 0.0f : passed[c];
     }
@@ -74,6 +73,8 @@ void WaveShader::trace(const TileTask& task, Wave& wave, bool coherent) {
         }
         if (!sheer_.empty()) see_sheer(wave, first, packet);
     }
+    if (!scene_->simple)
+        for (Buffer<float>& kept : wave.kept) std::fill_n(kept.data(), wave.ray_count, 1.0f);
     for (std::uint32_t r = 0; r < wave.ray_count; ++r)
         if (wave.instance[r] == kNoHit) miss(wave, r);
     arrange(task, wave);
