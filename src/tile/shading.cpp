@@ -2,6 +2,7 @@
 #include "tile/tile.h"
 
 #include <algorithm>
+#include <bit>
 
 namespace tessera {
 
@@ -123,19 +124,36 @@ void Tile::shade_opaque(SamplePosition offset, bool first, Planes& planes) {
     }
     if (first)
         for (std::vector<float>& plane : planes) std::fill(plane.begin(), plane.end(), 0.0f);
-    point_pixel_.clear();
-    point_ordinal_.clear();
-    for (std::uint32_t pixel = 0; pixel < visible_.ordinal.size(); ++pixel)
-        if (visible_.ordinal[pixel] != 0) {
-            point_pixel_.push_back(pixel);
-            point_ordinal_.push_back(visible_.ordinal[pixel]);
-        }
+    list_opaque();
     shade_list(offset, shader_.get());
     for (std::size_t i = 0; i < point_pixel_.size(); ++i) {
         const std::uint32_t pixel = point_pixel_[i];
         for (std::size_t c = 0; c < 4; ++c) planes[c][pixel] += point_color_[c][i];
         hit_[pixel / kBlockPixels] |= std::uint64_t{1} << pixel % kBlockPixels;
     }
+}
+
+// All pixels that show something opaque, by squares of 4x4: packets of rays should be square.
+void Tile::list_opaque() {
+    constexpr int kSquare = 4;
+    point_pixel_.resize(visible_.ordinal.size());
+    point_ordinal_.resize(visible_.ordinal.size());
+    std::uint32_t* const pixels = point_pixel_.data();
+    std::uint32_t* const ordinals = point_ordinal_.data();
+    std::size_t count = 0;
+    for (std::uint32_t block = 0; block < visible_.ordinal.size(); block += kBlockPixels)
+        for (int corner = 0; corner < kBlockSide * kBlockSide; corner += kSquare * kBlockSide)
+            for (int column = 0; column < kBlockSide; column += kSquare)
+                for (int i = 0; i < kSquare * kSquare; ++i) {
+                    const auto pixel =
+                        block + static_cast<std::uint32_t>(corner + i / kSquare * kBlockSide + column + i % kSquare);
+                    const std::uint32_t ordinal = visible_.ordinal[pixel];
+                    pixels[count] = pixel;
+                    ordinals[count] = ordinal;
+                    count += ordinal != 0;
+                }
+    point_pixel_.resize(count);
+    point_ordinal_.resize(count);
 }
 
 // The same with traced light.
@@ -145,10 +163,14 @@ void Tile::shade_list_traced(SamplePosition offset, PointShader& shader) {
     if (count == 0) return;
     batch_x_.resize(count + kMaxLanes);
     batch_y_.resize(count + kMaxLanes);
+    const auto columns = static_cast<std::uint32_t>(area_.side / kBlockSide);  // a power of two
+    const int shift = std::countr_zero(columns);
     for (std::size_t i = 0; i < count; ++i) {
-        const TilePixel p(point_pixel_[i], area_.side);
-        batch_x_[i] = 256 * (area_.x0 + p.x) + offset.x;
-        batch_y_[i] = 256 * (area_.y0 + p.y) + offset.y;
+        const std::uint32_t pixel = point_pixel_[i], block = pixel / kBlockPixels;
+        const std::uint32_t x = (block & (columns - 1)) * kBlockSide + pixel % kBlockSide,
+                            y = (block >> shift) * kBlockSide + pixel / kBlockSide % kBlockSide;
+        batch_x_[i] = 256 * (area_.x0 + static_cast<std::int32_t>(x)) + offset.x;
+        batch_y_[i] = 256 * (area_.y0 + static_cast<std::int32_t>(y)) + offset.y;
     }
     const SampleList samples{
         batch_x_.data(),           batch_y_.data(),         point_ordinal_.data(), static_cast<std::uint32_t>(count),

@@ -59,6 +59,7 @@ class Tile {
     void make_records(const std::vector<SurfaceLayout>& layouts);
     void take_sample(SamplePosition offset, bool first);
     void shade_opaque(SamplePosition offset, bool first, Planes& planes);
+    void list_opaque();
     void shade_list(SamplePosition offset, PointShader* shader);
     void shade_list_traced(SamplePosition offset, PointShader& shader);
     void compose_fragments(SamplePosition offset);

@@ -32,15 +32,18 @@ void WaveShader::arrange(const TileTask& task, Wave& wave) {
     slot_of_instance_.resize(batch_of.size(), kUnknown);
     instances_.clear();
     counts_.clear();
-    for (std::uint32_t r = 0; r < wave.ray_count; ++r) {
-        const std::uint32_t i = wave.instance[r];
+    // Neighbours mostly hit the same instance.
+    const std::uint32_t* const hit = wave.instance.data();
+    for (std::uint32_t r = 0; r < wave.ray_count;) {
+        const std::uint32_t i = hit[r], first = r;
+        while (r < wave.ray_count && hit[r] == i) ++r;
         if (i == kNoHit) continue;
         if (slot_of_instance_[i] == kUnknown) {
             slot_of_instance_[i] = static_cast<std::uint32_t>(instances_.size());
             instances_.push_back(i);
             counts_.push_back(0);
         }
-        ++counts_[slot_of_instance_[i]];
+        counts_[slot_of_instance_[i]] += r - first;
     }
     wave.batches.clear();
     wave.runs.clear();
@@ -65,13 +68,18 @@ void WaveShader::arrange(const TileTask& task, Wave& wave) {
     wave.point_count = at;
     wave.reserve_points(at);
     for (const InstanceRun& run : wave.runs) counts_[slot_of_instance_[run.instance]] = run.first;
-    for (std::uint32_t r = 0; r < wave.ray_count; ++r) {
-        const std::uint32_t i = wave.instance[r];
+    std::fill_n(wave.used.data(), at, ~0u);
+    std::uint32_t* const ray = wave.ray.data();
+    std::uint32_t* const hit_triangle = wave.hit_triangle.data();
+    const std::uint32_t* const triangle = wave.triangle.data();
+    for (std::uint32_t r = 0; r < wave.ray_count;) {
+        const std::uint32_t i = hit[r], first = r;
+        while (r < wave.ray_count && hit[r] == i) ++r;
         if (i == kNoHit) continue;
-        const std::uint32_t to = counts_[slot_of_instance_[i]]++;
-        wave.ray[to] = r;
-        wave.hit_triangle[to] = wave.triangle[r];
-        wave.used[to] = ~0u;
+        std::uint32_t& to = counts_[slot_of_instance_[i]];
+        for (std::uint32_t k = first; k < r; ++k) ray[to + k - first] = k;
+        std::copy_n(triangle + first, r - first, hit_triangle + to);
+        to += r - first;
     }
     // What pads a batch repeats its last point, and counts for nothing.
     for (const PointBatch& b : wave.batches)

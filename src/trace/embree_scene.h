@@ -61,12 +61,14 @@ class EmbreeScene {
     // finite or beyond 1.8e18, whose t_near is negative, or whose direction is zero, hit nothing; other lanes are not
     // touched. Rays cannot pass between triangles that share an edge, but some of those at the very vertex can. The
     // normal stays in the hierarchy's space. W is 1, 4, 8 or 16. Any number of threads at a time.
+    // `checked`: only usable lanes are valid, and time, id (the lane) and flags are set; then Embree's numbers of the
+    // packet may be used again.
     template <int W>
-    void nearest(const int* valid, RayPacket<W>& rays, bool coherent, bool from_camera,
-                 std::vector<SheerHit>* sheer) const;
+    void nearest(const int* valid, RayPacket<W>& rays, bool coherent, bool from_camera, std::vector<SheerHit>* sheer,
+                 bool checked = false) const;
     // Whether anything solid is in the way; faces stop light from both sides.
     template <int W>
-    void occluded(const int* valid, RayPacket<W>& rays, bool coherent) const;
+    void occluded(const int* valid, RayPacket<W>& rays, bool coherent, bool checked = false) const;
     // All sheer surfaces along the rays.
     template <int W>
     void find_sheer(const int* valid, RayPacket<W>& rays, std::vector<SheerHit>& sheer) const;

@@ -155,6 +155,15 @@ bool prepare(const int* valid, RayPacket<W>& r, Lanes<W>& lanes) {
     return any != 0;
 }
 
+// The same for rays whose maker has done it.
+template <int W>
+bool take_lanes(const int* valid, RayPacket<W>& r, bool checked, Lanes<W>& lanes) {
+    if (!checked) return prepare(valid, r, lanes);
+    int any = 0;
+    for (int i = 0; i < W; ++i) any |= lanes.on[i] = valid[i];
+    return any != 0;
+}
+
 // Calls `trace` for the packet, or for parts of it that have the width of Embree's vectors: Embree 3.13 ignores which
 // lanes of wider ones are on.
 template <int W, class Trace>
@@ -234,10 +243,10 @@ static float normal_along_ray(const Impl& impl, const RayPacket<W>& r, int i) {
 
 template <int W>
 void EmbreeScene::nearest(const int* valid, RayPacket<W>& rays, bool coherent, bool from_camera,
-                          std::vector<SheerHit>* sheer) const {
+                          std::vector<SheerHit>* sheer, bool checked) const {
     const Impl& impl = *impl_;
     Lanes<W> lanes;
-    const bool any = prepare(valid, rays, lanes);
+    const bool any = take_lanes(valid, rays, checked, lanes);
     // kNoHit is all ones.
     std::uint32_t nothing[W];
     for (int i = 0; i < W; ++i) nothing[i] = static_cast<std::uint32_t>(valid[i]);
@@ -279,9 +288,9 @@ void EmbreeScene::nearest(const int* valid, RayPacket<W>& rays, bool coherent, b
 }
 
 template <int W>
-void EmbreeScene::occluded(const int* valid, RayPacket<W>& rays, bool coherent) const {
+void EmbreeScene::occluded(const int* valid, RayPacket<W>& rays, bool coherent, bool checked) const {
     Lanes<W> lanes;
-    if (!prepare(valid, rays, lanes) || !impl_->traced) return;
+    if (!take_lanes(valid, rays, checked, lanes) || !impl_->traced) return;
     const LeaveOut<W> leave_out(rays, has_sheer(), kMeetsSheer);
     // rtcOccluded16 of Embree 3.13.5 never returns for coherent rays in a scene of instances, with AVX-512.
     TraceContext context(*impl_, coherent && !impl_->top);
@@ -303,9 +312,9 @@ void EmbreeScene::find_sheer(const int* valid, RayPacket<W>& rays, std::vector<S
     intersect(lanes, rays, context);
 }
 
-#define TESSERA_PACKETS(W)                                                                                      \
-    template void EmbreeScene::nearest<W>(const int*, RayPacket<W>&, bool, bool, std::vector<SheerHit>*) const; \
-    template void EmbreeScene::occluded<W>(const int*, RayPacket<W>&, bool) const;                              \
+#define TESSERA_PACKETS(W)                                                                                            \
+    template void EmbreeScene::nearest<W>(const int*, RayPacket<W>&, bool, bool, std::vector<SheerHit>*, bool) const; \
+    template void EmbreeScene::occluded<W>(const int*, RayPacket<W>&, bool, bool) const;                              \
     template void EmbreeScene::find_sheer<W>(const int*, RayPacket<W>&, std::vector<SheerHit>&) const;
 TESSERA_PACKETS(1)
 TESSERA_PACKETS(4)

@@ -30,15 +30,11 @@ void WaveShader::find_light(Wave& wave) {
         scene_->kernels->shadow_rays(job);
         counters.shadow_rays += job.made;
         for (std::uint32_t first = 0; first < job.made; first += kPacketWidth) {
-            RayPacket<kPacketWidth> packet;
-            scene_->kernels->pack({shadow_rays_, scene_->scene->trace_from_camera(), first, 0.0f, &packet});
-            alignas(64) int valid[kPacketWidth];
-            for (std::uint32_t lane = 0; lane < kPacketWidth; ++lane) {
-                valid[lane] = first + lane < job.made ? -1 : 0;
-                packet.t_far[lane] = shadow_far_[first + lane];
-                packet.mask[lane] = kMeetsSolid;
-            }
-            scene_->scene->occluded(valid, packet, true);
+            RayPacket<kPacketWidth>& packet = shadow_packet_.rays;
+            const int* const valid = shadow_packet_.valid;
+            scene_->kernels->pack(
+                {shadow_rays_, scene_->scene->trace_from_camera(), first, job.made, job.t_far, &shadow_packet_});
+            scene_->scene->occluded(valid, packet, true, true);
             float* const arrived = arrives + static_cast<std::size_t>(light * arrival_.channels) * arrival_.stride;
             if (colored) attenuate(packet, valid, first, arrived, wave);
             for (std::uint32_t lane = 0; lane < kPacketWidth && first + lane < job.made; ++lane)
@@ -56,11 +52,14 @@ void WaveShader::attenuate(RayPacket<kPacketWidth>& packet, const int* valid, st
     for (std::uint32_t lane = 0; lane < kPacketWidth; ++lane) {
         free[lane] = valid[lane] && !(packet.t_far[lane] < 0.0f) ? -1 : 0;
         any |= free[lane] != 0;
-        packet.mask[lane] = kMeetsSheer;
         for (float& channel : left[lane]) channel = free[lane] ? 1.0f : 0.0f;
     }
     sheer_.clear();
-    if (any) scene_->scene->find_sheer(free, packet, sheer_);
+    if (any) {
+        std::fill_n(packet.mask, kPacketWidth, kMeetsSheer);
+        scene_->scene->find_sheer(free, packet, sheer_);
+        std::fill_n(packet.mask, kPacketWidth, kMeetsSolid);
+    }
     // In an order of their own: products of many factors depend on it. Each once.
     std::sort(sheer_.begin(), sheer_.end(), [](const SheerHit& a, const SheerHit& b) {
         if (a.lane != b.lane) return a.lane < b.lane;

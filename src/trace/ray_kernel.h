@@ -26,16 +26,22 @@ TESSERA_INLINE void store_some3(const WaveArrays& arrays, int number, std::uint3
     store_some(arrays[number + 2] + at, mask, v.z);
 }
 
-TESSERA_INLINE void put_ray(RayPacket<kPacketWidth>& packet, int lane, const Vec3T<Float>& origin,
+TESSERA_INLINE void put_ray(WavePacket& packet, int lane, Mask there, const Vec3T<Float>& origin,
                             const Vec3T<Float>& direction, Float t_near, Float t_far) {
-    store(packet.org_x + lane, origin.x);
-    store(packet.org_y + lane, origin.y);
-    store(packet.org_z + lane, origin.z);
-    store(packet.dir_x + lane, direction.x);
-    store(packet.dir_y + lane, direction.y);
-    store(packet.dir_z + lane, direction.z);
-    store(packet.t_near + lane, t_near);
-    store(packet.t_far + lane, t_far);
+    RayPacket<kPacketWidth>& rays = packet.rays;
+    store(rays.org_x + lane, origin.x);
+    store(rays.org_y + lane, origin.y);
+    store(rays.org_z + lane, origin.z);
+    store(rays.dir_x + lane, direction.x);
+    store(rays.dir_y + lane, direction.y);
+    store(rays.dir_z + lane, direction.z);
+    store(rays.t_near + lane, t_near);
+    store(rays.t_far + lane, t_far);
+    const Float length = abs(direction.x) + abs(direction.y) + abs(direction.z);
+    const Float size = abs(origin.x) + abs(origin.y) + abs(origin.z) + length;
+    const Mask usable = there & (size <= Float(kLargestRayNumber)) & (length > Float(0.0f)) & (t_far >= t_near) &
+                        (t_near >= Float(0.0f));
+    store(packet.valid + lane, select(usable, Int(-1), Int(0)));
 }
 
 // Directions have length 1 along the view axis, so that t is the distance there.
@@ -44,22 +50,24 @@ inline void primary_rays(const PrimaryRaysJob& job) {
     const float x = static_cast<float>(256 * job.x + job.offset.x), y = static_cast<float>(256 * job.y + job.offset.y);
     const Float zero(0.0f), one(1.0f);
     for (int lane = 0; lane < kPacketWidth; lane += kLanes<Float>) {
-        const Int pixel = iota<Int>() + Int(lane);
-        const EyeDirection<Float> eye(job.rays, to_float((pixel & Int(kSide - 1)) << 8) + Float(x),
-                                      to_float((pixel >> 2) << 8) + Float(y));
+        const Int pixel = iota<Int>() + Int(lane), column = pixel & Int(kSide - 1), row = pixel >> 2;
+        const EyeDirection<Float> eye(job.rays, to_float(column << 8) + Float(x), to_float(row << 8) + Float(y));
         Vec3T<Float> origin{zero, zero, zero}, direction{-eye.x, -eye.y, -one};
         if (job.rays.orthographic) origin = {-eye.x, -eye.y, zero}, direction = {zero, zero, -one};
-        put_ray(*job.packet, lane, transform_point(job.trace_from_camera, origin),
-                transform_direction(job.trace_from_camera, direction), Float(job.t_near), Float(job.t_far));
+        put_ray(*job.packet, lane, (column < Int(job.columns)) & (row < Int(job.rows)),
+                transform_point(job.trace_from_camera, origin), transform_direction(job.trace_from_camera, direction),
+                Float(job.t_near), Float(job.t_far));
     }
 }
 
 inline void pack(const PackJob& job) {
+    constexpr float kFar = 3e38f;  // beyond any scene
     for (int lane = 0; lane < kPacketWidth; lane += kLanes<Float>) {
         const std::uint32_t at = job.first + static_cast<std::uint32_t>(lane);
-        put_ray(*job.packet, lane, transform_point(job.trace_from_camera, load3(job.rays, kOriginX, at)),
+        const Mask there = iota<Int>() + Int(static_cast<std::int32_t>(at)) < Int(static_cast<std::int32_t>(job.count));
+        put_ray(*job.packet, lane, there, transform_point(job.trace_from_camera, load3(job.rays, kOriginX, at)),
                 transform_direction(job.trace_from_camera, load3(job.rays, kDirectionX, at)), Float(0.0f),
-                Float(job.t_far));
+                job.t_far ? load<Float>(job.t_far + at) : Float(kFar));
     }
 }
 

@@ -30,4 +30,16 @@ struct alignas(4 * kWidth < 16 ? 16 : 4 * kWidth) RayPacket {
     std::uint32_t instance[kWidth];  // index into Frame::instances, or kNoHit
 };
 
+// A packet that kernels write rays to again and again, with the lanes that can be traced (-1). A ray is usable where
+// its numbers are finite and far below where squares overflow, and it goes somewhere.
+inline constexpr float kLargestRayNumber = 1e18f;
+struct WavePacket {
+    alignas(64) int valid[kPacketWidth];
+    RayPacket<kPacketWidth> rays;
+
+    explicit WavePacket(std::uint32_t mask) : valid{}, rays{} {
+        for (std::uint32_t lane = 0; lane < kPacketWidth; ++lane) rays.id[lane] = lane, rays.mask[lane] = mask;
+    }
+};
+
 }  // namespace tessera

@@ -54,9 +54,10 @@ TESSERA_INLINE void store_point(const WaveArrays& points, const SurfaceLayout& l
 
 // The same surface function as the rasterizer's; then the position is moved onto the triangle's own plane, as rays
 // start from it.
-inline void primary_surfaces(const PrimarySurfacesJob& job) {
+template <class Kind>
+inline void primary_surfaces_as(const PrimarySurfacesJob& job) {
     constexpr std::uint32_t kWidth = kLanes<Float>;
-    const SurfaceLayout layout = job.layout;
+    const SurfaceLayout layout = Kind::layout(job);
     const MaterialView material = *job.material;
     const PictureRays rays(job.source->projection);
     const float footprint_scale = job.source->shading->footprint_scale;
@@ -82,9 +83,17 @@ inline void primary_surfaces(const PrimarySurfacesJob& job) {
     }
 }
 
-inline void ray_surfaces(const RaySurfacesJob& job) {
+// Those that most scenes have are constants of the code.
+inline void primary_surfaces(const PrimarySurfacesJob& job) {
+    if (job.layout == NormalOnly::kLayout) return primary_surfaces_as<NormalOnly>(job);
+    if (job.layout == NormalAndUv::kLayout) return primary_surfaces_as<NormalAndUv>(job);
+    primary_surfaces_as<AnyLayout>(job);
+}
+
+template <class Kind>
+inline void ray_surfaces_as(const RaySurfacesJob& job) {
     constexpr std::uint32_t kWidth = kLanes<Float>;
-    const SurfaceLayout layout = job.layout;
+    const SurfaceLayout layout = Kind::layout(job);
     const MaterialView material = *job.material;
     const InstanceView& instance = *job.instance;
     const MeshView& mesh = instance.mesh;
@@ -117,6 +126,12 @@ inline void ray_surfaces(const RaySurfacesJob& job) {
         store(job.points[kRounding] + at, coordinate_size(hit.point.position, Float(job.instance_size)));
         store(job.points[kTimes] + at, number(kThroughput));
     }
+}
+
+inline void ray_surfaces(const RaySurfacesJob& job) {
+    if (job.layout == NormalOnly::kLayout) return ray_surfaces_as<NormalOnly>(job);
+    if (job.layout == NormalAndUv::kLayout) return ray_surfaces_as<NormalAndUv>(job);
+    ray_surfaces_as<AnyLayout>(job);
 }
 
 }  // namespace tessera::TESSERA_ISA_NAMESPACE

@@ -112,24 +112,21 @@ void TraceVisibility::find(SamplePosition offset, bool counted, VisibleTile& til
 
 void TraceVisibility::see_square(int x, int y, SamplePosition offset, VisibleTile& tile) {
     const ProjectionView& projection = source_->frame->projection;
-    RayPacket<kPacketWidth> packet;
-    PrimaryRaysJob job{PictureRays(projection), source_->scene->trace_from_camera(), area_.x0 + x, area_.y0 + y, offset,
-                       projection.near,         distance_of_depth(projection, 0.0f), &packet};
-    source_->kernels->primary_rays(job);
-    alignas(64) int valid[kPacketWidth];
+    RayPacket<kPacketWidth>& packet = packet_.rays;
     const int columns = std::min(kSquare, area_.width - x), rows = std::min(kSquare, area_.height - y);
-    for (int lane = 0; lane < kPacketWidth; ++lane) {
-        valid[lane] = lane % kSquare < columns && lane / kSquare < rows ? -1 : 0;
-        packet.mask[lane] = kMeetsAll;
-    }
+    const PrimaryRaysJob job{
+        PictureRays(projection), source_->scene->trace_from_camera(), area_.x0 + x, area_.y0 + y, offset, columns, rows,
+        projection.near,         distance_of_depth(projection, 0.0f), &packet_};
+    source_->kernels->primary_rays(job);
     rays += static_cast<std::uint64_t>(columns * rows);
     const bool looks = source_->scene->has_undecided();
     sheer_.clear();
-    source_->scene->nearest(valid, packet, true, true, looks ? &sheer_ : nullptr);
+    source_->scene->nearest(packet_.valid, packet, true, true, looks ? &sheer_ : nullptr, true);
+    std::uint32_t* const first = tile.ordinal.data() + place(x, y);
     for (int lane = 0; lane < kPacketWidth; ++lane) {
-        if (!valid[lane] || packet.instance[lane] == kNoHit) continue;
+        if (!packet_.valid[lane] || packet.instance[lane] == kNoHit) continue;
         ++hits;
-        tile.ordinal[place(x + lane % kSquare, y + lane / kSquare)] =
+        first[lane / kSquare * kBlockSide + lane % kSquare] =
             ordinal_of(packet.instance[lane], packet.triangle[lane], tile);
     }
     if (!sheer_.empty()) see_sheer(x, y, offset, tile);

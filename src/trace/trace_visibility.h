@@ -56,6 +56,7 @@ class TraceVisibility final : public TileVisibility {
     std::vector<Slot> table_;
     std::uint32_t last_instance_ = kNoHit, last_triangle_ = 0, last_ordinal_ = 0;
     bool gathered_ = true;  // instances follow each other
+    WavePacket packet_{kMeetsAll};
     std::vector<SheerHit> sheer_;
     std::vector<std::uint32_t> instance_count_, new_ordinal_;
     std::vector<TileTriangle> sorted_;

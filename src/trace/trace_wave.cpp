@@ -6,12 +6,6 @@
 
 namespace tessera {
 
-namespace {
-
-constexpr float kInfinity = 3.0e38f;  // longer than any way through a scene
-
-}  // namespace
-
 // Nothing is there: ambient light, or for light that only passed surfaces the background.
 void WaveShader::miss(Wave& wave, std::uint32_t ray) const {
     float light[3] = {0, 0, 0}, passed[3] = {0, 0, 0};
@@ -58,25 +52,26 @@ void WaveShader::see_sheer(Wave& wave, std::uint32_t first, const RayPacket<kPac
 void WaveShader::trace(const TileTask& task, Wave& wave, bool coherent) {
     const bool looks = scene_->scene->has_undecided();
     for (std::uint32_t first = 0; first < wave.ray_count; first += kPacketWidth) {
-        RayPacket<kPacketWidth> packet;
-        scene_->kernels->pack({wave.rays, scene_->scene->trace_from_camera(), first, kInfinity, &packet});
-        alignas(64) int valid[kPacketWidth];
-        for (std::uint32_t lane = 0; lane < kPacketWidth; ++lane) {
-            valid[lane] = first + lane < wave.ray_count ? -1 : 0;
-            packet.mask[lane] = kMeetsSolid | kMeetsSheer;
-        }
+        RayPacket<kPacketWidth>& packet = packet_.rays;
+        scene_->kernels->pack(
+            {wave.rays, scene_->scene->trace_from_camera(), first, wave.ray_count, nullptr, &packet_});
         sheer_.clear();
-        scene_->scene->nearest(valid, packet, coherent, false, looks ? &sheer_ : nullptr);
+        scene_->scene->nearest(packet_.valid, packet, coherent, false, looks ? &sheer_ : nullptr, true);
         for (std::uint32_t lane = 0; lane < kPacketWidth && first + lane < wave.ray_count; ++lane) {
-            wave.instance[first + lane] = packet.instance[lane];
+            wave.instance[first + lane] = packet_.valid[lane] ? packet.instance[lane] : kNoHit;
             wave.triangle[first + lane] = packet.triangle[lane];
         }
         if (!sheer_.empty()) see_sheer(wave, first, packet);
     }
-    if (!scene_->simple)
-        for (Buffer<float>& kept : wave.kept) std::fill_n(kept.data(), wave.ray_count, 1.0f);
-    for (std::uint32_t r = 0; r < wave.ray_count; ++r)
-        if (wave.instance[r] == kNoHit) miss(wave, r);
+    if (scene_->simple && scene_->shading->ambient.uniform) {
+        for (std::size_t c = 0; c < 3; ++c)
+            std::fill_n(wave.light[c].data(), wave.ray_count, scene_->shading->ambient.ground[c]);
+    } else {
+        if (!scene_->simple)
+            for (Buffer<float>& kept : wave.kept) std::fill_n(kept.data(), wave.ray_count, 1.0f);
+        for (std::uint32_t r = 0; r < wave.ray_count; ++r)
+            if (wave.instance[r] == kNoHit) miss(wave, r);
+    }
     arrange(task, wave);
     for (const InstanceRun& run : wave.runs) {
         RaySurfacesJob job{};

@@ -93,17 +93,18 @@ struct PrimaryRaysJob {
     const float* trace_from_camera;  // 3x4 rows
     int x, y;                        // first pixel
     SamplePosition offset;
+    int columns, rows;  // of those, in the picture
     float t_near, t_far;
-    RayPacket<kPacketWidth>* packet;
+    WavePacket* packet;
 };
 
 // Up to kPacketWidth rays of a wave, from `first` on.
 struct PackJob {
     WaveArrays rays;
     const float* trace_from_camera;
-    std::uint32_t first;
-    float t_far;
-    RayPacket<kPacketWidth>* packet;
+    std::uint32_t first, count;  // of the wave's rays; count: all
+    const float* t_far;          // by ray; null: without end
+    WavePacket* packet;
 };
 
 // The planes that triangles of an instance lie in, in camera space: unit normal of the front, and its product with

@@ -65,15 +65,15 @@ void WaveShader::take_samples(const TileTask& task, const SampleList& samples, s
     if (!scene_->simple) wave.states.assign(count, RayState{});
     arrange(task, wave);
 
-    x_.reserve(wave.point_count);
-    y_.reserve(wave.point_count);
-    ordinal_.reserve(wave.point_count);
+    std::int32_t *const x = x_.reserve(wave.point_count), *const y = y_.reserve(wave.point_count);
+    std::uint32_t* const ordinal = ordinal_.reserve(wave.point_count);
     for (std::uint32_t p = 0; p < wave.point_count; ++p) {
         const std::uint32_t from = first + wave.ray[p];
-        x_[p] = samples.x[from], y_[p] = samples.y[from], ordinal_[p] = samples.ordinal[from];
-        wave.points[kTimes][p] = 1.0f;
-        wave.points[kRounding][p] = scene_->instance_size[samples.triangles[ordinal_[p] - 1].instance];
+        x[p] = samples.x[from], y[p] = samples.y[from], ordinal[p] = samples.ordinal[from];
     }
+    std::fill_n(wave.points[kTimes], wave.point_count, 1.0f);
+    for (const InstanceRun& run : wave.runs)
+        std::fill_n(wave.points[kRounding] + run.first, run.count + kMaxLanes, scene_->instance_size[run.instance]);
     const ProjectionView& picture = task.frame.projection;
     const float pixel = 2.0f / (picture.height * picture.scale_y);
     for (const PointBatch& b : wave.batches) {
@@ -113,14 +113,16 @@ void WaveShader::shade_points(const TileTask& task, Wave& wave, bool camera) {
         scene_->kernels->shade(job);
     }
     if (!scene_->simple) choose_rays(task, wave, camera);
-    for (std::uint32_t p = 0; p < wave.point_count; ++p) {
-        if (!wave.used[p]) continue;
-        for (int c = 0; c < 3; ++c) {
-            wave.light[c][wave.ray[p]] = wave.shades[kRadianceR + c][p];
-            wave.passed[c][wave.ray[p]] = 0.0f;
-        }
+    for (int c = 0; c < 3; ++c) {
+        const float* const radiance = wave.shades[kRadianceR + c];
+        float* const light = wave.light[c].data();
+        for (const PointBatch& b : wave.batches)  // without what pads them
+            for (std::uint32_t p = b.first; p < b.first + b.count; ++p) light[wave.ray[p]] = radiance[p];
     }
-    if (!scene_->simple && !camera) absorb(wave);
+    if (scene_->simple) return;
+    for (Buffer<float>& passed : wave.passed)
+        for (std::uint32_t p = 0; p < wave.point_count; ++p) passed[wave.ray[p]] = 0.0f;
+    if (!camera) absorb(wave);
 }
 
 // Makes the rays that the points of a wave send on. False where there are none.
@@ -184,14 +186,18 @@ void WaveShader::count_ended(SpawnJob job, const std::uint32_t* used, std::initi
 
 // What came along the rays of a wave, to the points that they left: in their order, so mirrored light first.
 void WaveShader::gather(const Wave& from, Wave& to) const {
-    for (std::uint32_t r = 0; r < from.ray_count; ++r) {
-        const std::uint32_t ray = to.ray[point_of(from, r)];
-        for (int c = 0; c < 3; ++c) {
-            const float weight = from.rays[kWeightR + c][r];
-            float light = from.light[c][r], passed = from.passed[c][r];
-            if (!scene_->simple) light *= from.kept[c][r], passed *= from.kept[c][r];
-            to.light[c][ray] += weight * light;
-            to.passed[c][ray] += weight * passed;
+    for (std::size_t c = 0; c < 3; ++c) {
+        const float* const weight = from.rays[kWeightR + static_cast<int>(c)];
+        const float* const light = from.light[c].data();
+        float* const sum = to.light[c].data();
+        if (scene_->simple) {
+            for (std::uint32_t r = 0; r < from.ray_count; ++r) sum[to.ray[point_of(from, r)]] += weight[r] * light[r];
+            continue;
+        }
+        for (std::uint32_t r = 0; r < from.ray_count; ++r) {
+            const std::uint32_t ray = to.ray[point_of(from, r)];
+            sum[ray] += weight[r] * (light[r] * from.kept[c][r]);
+            to.passed[c][ray] += weight[r] * (from.passed[c][r] * from.kept[c][r]);
         }
     }
 }
@@ -200,6 +206,11 @@ void WaveShader::gather(const Wave& from, Wave& to) const {
 // the background's light, coloured.
 void WaveShader::write(std::uint32_t first, float* const (&color)[4]) const {
     const Wave& wave = *waves_[0];
+    if (scene_->simple) {
+        for (std::size_t c = 0; c < 3; ++c) std::copy_n(wave.light[c].data(), wave.ray_count, color[c] + first);
+        std::fill_n(color[3] + first, wave.ray_count, 1.0f);
+        return;
+    }
     for (std::uint32_t p = 0; p < wave.point_count; ++p) {
         if (!wave.used[p]) continue;
         const std::uint32_t ray = wave.ray[p];

@@ -69,6 +69,7 @@ class WaveShader final : public PointShader {
     const TransportScene* scene_ = nullptr;
     std::optional<SheerSurface> sheer_surface_;
     std::vector<std::unique_ptr<Wave>> waves_;
+    WavePacket packet_{kMeetsSolid | kMeetsSheer}, shadow_packet_{kMeetsSolid};
     // arrange.cpp
     Buffer<float> planes_;                        // of triangles, by ordinal - 1
     std::vector<std::uint32_t> plane_triangles_;  // of an instance
