@@ -18,7 +18,6 @@ Primitive uv_sphere(int around, int down) {
             const double theta = kPi * j / down, phi = 2 * kPi * k / around;
             const double x = std::sin(theta) * std::cos(phi), y = std::cos(theta), z = std::sin(theta) * std::sin(phi);
             p.positions.push_back({static_cast<float>(x), static_cast<float>(1 + y), static_cast<float>(z)});
-            p.normals.push_back({static_cast<float>(x), static_cast<float>(y), static_cast<float>(z)});
         }
     for (int j = 0; j < down; ++j)
         for (int k = 0; k < around; ++k) {
@@ -36,17 +35,14 @@ float height(float x, float z) {
            0.05f * std::sin(17.f * x) * std::cos(19.f * z);
 }
 
-// n x n cells on [-5, 5]^2: 2 * n * n triangles. Normals by central differences.
+// n x n cells on [-5, 5]^2: 2 * n * n triangles.
 Primitive height_field(int n) {
     Primitive p;
     const auto coordinate = [n](int i) { return -5 + 10.f * static_cast<float>(i) / static_cast<float>(n); };
     for (int j = 0; j <= n; ++j)
         for (int k = 0; k <= n; ++k) {
-            constexpr float kStep = 1e-2f;
             const float x = coordinate(k), z = coordinate(j);
             p.positions.push_back({x, height(x, z), z});
-            p.normals.push_back(normalize(Vec3{height(x - kStep, z) - height(x + kStep, z), 2 * kStep,
-                                               height(x, z - kStep) - height(x, z + kStep)}));
         }
     for (int j = 0; j < n; ++j)
         for (int k = 0; k < n; ++k) {
@@ -59,7 +55,6 @@ Primitive height_field(int n) {
 Primitive ground() {
     Primitive p;
     p.positions = {{-20, 0, -20}, {20, 0, -20}, {20, 0, 20}, {-20, 0, 20}};
-    p.normals.assign(4, {0, 1, 0});
     p.indices = {0, 2, 1, 0, 3, 2};
     return p;
 }
