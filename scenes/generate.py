@@ -409,9 +409,14 @@ def glass():
     doc = Document("Mirrors and glass")
     tiles = doc.texture("checker", "checker.png")
     floor = doc.material("tiles", (1, 1, 1), roughness=0.7, texture=tiles)
-    doc.node("floor", mesh=doc.mesh("floor", quad([0, 0, -4], [14, 0, 0], [0, 0, -10], (14, 10), 4), floor))
+    doc.node("floor", mesh=doc.mesh("floor", quad([0, 0, 5], [14, 0, 0], [0, 0, -11], (14, 11), 4), floor))
     wall = doc.material("wall", srgb("#b9a58c"), roughness=0.95)
     doc.node("wall", mesh=doc.mesh("wall", quad([0, 4, -6], [14, 0, 0], [0, 4, 0]), wall))
+    doc.node("back wall", mesh=doc.mesh("back wall", quad([0, 4, 16], [-14, 0, 0], [0, 4, 0]), wall))
+    for side in (-1, 1):
+        doc.node("side wall", mesh=doc.mesh(f"side wall {side}", quad([14 * side, 4, 5], [0, 0, 11 * side], [0, 4, 0]), wall))
+    lid = doc.material("ceiling", srgb("#e8e4da"), roughness=1.0)
+    doc.node("ceiling", mesh=doc.mesh("ceiling", quad([0, 8, 5], [14, 0, 0], [0, 0, 11]), lid))
 
     def clear(ior, thickness=1.0, color=None, distance=None, priority=None, dispersion=None):
         extensions = {"KHR_materials_transmission": {"transmissionFactor": 1.0}, "KHR_materials_ior": {"ior": ior}}
@@ -440,16 +445,17 @@ def glass():
         1.52, color=(0.55, 0.85, 0.6), distance=0.6, priority=1)))
     place("water", 0.4, [-2.2, 0.72, 0.5], doc.material("water", roughness=0.0, **clear(1.333, priority=2)))
     ruby = doc.material("ruby", roughness=0.0, **clear(1.77, color=(0.9, 0.06, 0.12), distance=0.5))
-    place("ruby block", 1.0, [1.15, 0.35, 1.25], ruby, box([0.7, 0.7, 0.7], 0.05), "block", rotation=about([0, 1, 0], 32))
+    place("ruby block", 1.0, [1.15, 0.36, 1.25], ruby, box([0.7, 0.7, 0.7], 0.05), "block", rotation=about([0, 1, 0], 32))
     prism = doc.material("flint", roughness=0.0, **clear(1.7, dispersion=0.8))
-    place("prism", 1.0, [2.35, 0.0, 0.9], prism, cylinder(0.42, 0.42, 1.1, 0.0, 3), "prism", rotation=about([0, 1, 0], 15))
+    place("prism", 1.0, [2.35, 0.56, 0.9], prism, box([0.5, 1.1, 0.5], 0.02, 1), "prism", rotation=about([0, 1, 0], 58))
     pane = doc.material("pane", (0.75, 0.9, 1.0), roughness=0.0, doubleSided=True, **clear(1.5, 0))
     place("pane", 1.0, [-0.55, 1.1, -2.6], pane, quad([0, 0, 0], [0.9, 0, 0], [0, 1.1, 0]), "pane")
     kettle = {"model": "phong", "diffuse": srgb("#7d3c98"), "specular": [0.6, 0.6, 0.6], "shininess": 60.0,
               "ambient": srgb("#7d3c98"), "mirror": [0.3, 0.3, 0.3]}
     place("lacquer", 0.36, [0.35, 0.36, 2.0], doc.material("lacquer", srgb("#7d3c98"), extensions={PHONG: kettle}))
-    doc.light("lamp", "point", (1, 0.94, 0.84), 260.0, [3.2, 5.2, 4.6])
-    doc.light("window", "directional", (0.78, 0.87, 1), 1.1, [-5, 4, 5], [0, 0, 0])
+    doc.light("lamp", "point", (1, 0.94, 0.84), 260.0, [3.2, 6.2, 4.6])
+    doc.light("other lamp", "point", (0.78, 0.87, 1), 120.0, [-6, 6.5, 3])
+    doc.light("back lamp", "point", (1, 0.96, 0.9), 130.0, [0, 6.5, 11])
     doc.camera("main", [0.1, 2.3, 7.4], [-0.05, 0.85, 0], 34)
     return doc
 

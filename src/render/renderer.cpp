@@ -27,12 +27,14 @@ struct Renderer::Impl {
           arena(o.threads),
           prepared(s, &arena, is_parallel(o.engine) ? resolve_isa(o.isa) : Isa::kScalar),
           shading(s, prepared.used_materials(), arena, warnings) {
+        warn_of_transmission();
         const bool wide = o.filter != PixelFilter::kBox && (o.want_color || o.want_linear || o.want_alpha);
         if (!is_parallel(o.engine) || !wide) return;
         filter.emplace(o, &arena);
         sample_plane.resize(filter->plane_floats());
     }
 
+    void warn_of_transmission();
     void draw(const Shot& now, const Shot& before, const Shot& after, RenderResult& result);
     PictureTargets make_targets(RenderResult& result);
     void see_other(const Shot& shot, const Watchdog& watchdog, OtherShot& other);
@@ -54,6 +56,16 @@ struct Renderer::Impl {
     std::optional<FilterPass> filter;
     std::vector<float> sample_plane;
 };
+
+// What the picture lacks where no light is traced.
+void Renderer::Impl::warn_of_transmission() {
+    if (traces_bounces(options)) return;
+    const std::vector<bool> used = prepared.used_materials();
+    for (std::size_t m = 0; m < scene.materials.size(); ++m)
+        if (used[m] && scene.materials[m].transmission > 0)
+            return warnings.push_back("material " + std::to_string(m) + " lets light through, which " +
+                                      name(options.engine) + " draws as opaque; the engines trace and hybrid do not");
+}
 
 Renderer::Renderer(const Scene& scene, const RenderOptions& options) {
     check_options(options);

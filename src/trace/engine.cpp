@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <mutex>
+#include <optional>
 
 namespace tessera {
 namespace {
@@ -18,6 +19,17 @@ TraceClass class_of(const InstanceView& instance, const MaterialView& material) 
     c.culled = !material.double_sided;
     c.seen_inside = transmits && !material.thin;
     return c;
+}
+
+// What a surface lets through of light that goes straight on, if that depends on no texture and no vertex.
+std::optional<Vec3T<float>> even_transmittance(const InstanceView& instance, const MaterialView& material) {
+    bool even = instance.mesh.colors == nullptr;
+    for (const TextureInput& in : material.inputs) even = even && !in.texture;
+    if (!even) return std::nullopt;
+    SurfacePoint<float> anywhere{};
+    anywhere.normal = anywhere.view = anywhere.geometric_normal = {0, 0, 1};
+    anywhere.color = {1, 1, 1, 1};
+    return straight_through(material, anywhere);
 }
 
 int choose_tile_side(const PictureSettings& settings, const ProjectionView& picture) {
@@ -46,11 +58,13 @@ void LightTracer::begin(const Frame& frame, const ShadingContext& shading, const
     std::vector<TraceClass> classes;
     TransportScene& t = state_->transport;
     t.instance_size.clear();
+    t.even_transmittance.clear();
     t.simple = true;
     for (std::size_t i = 0; i < frame.instances.size(); ++i) {
         const InstanceView& instance = frame.instances[i];
         classes.push_back(class_of(instance, shading.materials[instance.material]));
         t.simple = t.simple && classes.back().mask == kMeetsSolid;
+        t.even_transmittance.push_back(even_transmittance(instance, shading.materials[instance.material]));
         t.instance_size.push_back(largest_coordinate(instance, frame.prepared[i]->bounds));
     }
     state_->scene.update(frame, classes, arena);

@@ -70,6 +70,10 @@ void WaveShader::attenuate(RayPacket<kPacketWidth>& packet, const int* valid, st
         if (i > 0 && hit.lane == sheer_[i - 1].lane && hit.instance == sheer_[i - 1].instance &&
             hit.triangle == sheer_[i - 1].triangle)
             continue;
+        if (const auto& even = scene_->even_transmittance[hit.instance]) {
+            left[hit.lane][0] *= even->x, left[hit.lane][1] *= even->y, left[hit.lane][2] *= even->z;
+            continue;
+        }
         const std::uint32_t ray = first + hit.lane;
         const WaveArrays& r = shadow_rays_;
         const ConeRay<float> cone{{r[kOriginX][ray], r[kOriginY][ray], r[kOriginZ][ray]},

@@ -91,8 +91,10 @@ TEST_F(Cli, InfoShowsPicturesAndExtensions) {
 }
 
 TEST_F(Cli, InfoShowsTheLayersOfMaterials) {
+    std::filesystem::copy_file(scene("checker.png"), in_folder("checker.png"));
     std::ofstream(in_folder("m.gltf"))
-        << R"({"asset":{"version":"2.0"},"images":[{"uri":"data:,"}],"textures":[{"source":0}],"materials":[{"extensions":{)"
+        << R"({"asset":{"version":"2.0"},"images":[{"uri":"checker.png"}],"textures":[{"source":0}],"materials":[{)"
+        << R"("extensions":{)"
         << R"("KHR_materials_transmission":{"transmissionFactor":0.75,"transmissionTexture":{"index":0}},)"
         << R"("KHR_materials_volume":{"thicknessFactor":0.25,"attenuationDistance":2,"attenuationColor":[1,0.5,0]},)"
         << R"("KHR_materials_ior":{"ior":1.25},"KHR_materials_clearcoat":{"clearcoatFactor":1},)"

@@ -126,18 +126,18 @@ TEST(MaterialExtensions, RangesAreKept) {
 
 TEST(MaterialExtensions, WhatIsNotDrawnIsNamedOnceAndNotRefused) {
     const std::string two =
-        "\"KHR_materials_transmission\":{},\"KHR_materials_ior\":{}}},{\"extensions\":{\"KHR_materials_transmission\":{"
+        "\"KHR_materials_clearcoat\":{},\"KHR_materials_ior\":{}}},{\"extensions\":{\"KHR_materials_clearcoat\":{"
         "}";
     const Scene scene = load(two,
-                             ",\"extensionsUsed\":[\"KHR_materials_transmission\",\"KHR_materials_ior\"],"
-                             "\"extensionsRequired\":[\"KHR_materials_transmission\"]");
+                             ",\"extensionsUsed\":[\"KHR_materials_clearcoat\",\"KHR_materials_ior\"],"
+                             "\"extensionsRequired\":[\"KHR_materials_clearcoat\"]");
     ASSERT_EQ(scene.materials.size(), 2u);
     std::size_t named = 0;
     for (const std::string& warning : scene.warnings) named += warning.find("KHR_materials") != std::string::npos;
     EXPECT_EQ(named, 1u);
     EXPECT_TRUE(warned(scene, "KHR_materials_clearcoat is read, but not drawn yet"));
     EXPECT_TRUE(scene.extensions_ignored.empty());
-    EXPECT_EQ(scene.extensions_required, (std::vector<std::string>{"KHR_materials_transmission"}));
+    EXPECT_EQ(scene.extensions_required, (std::vector<std::string>{"KHR_materials_clearcoat"}));
 }
 
 }  // namespace

@@ -196,13 +196,15 @@ TEST_F(MtlFiles, GlassIsTransmission) {
         const Scene scene = load("newmtl m\nKd 1 1 1\nTf 0.25 0.5 0\nNi 1.33\nillum " + std::to_string(illum) + "\n");
         const Material& m = material(scene);
         const bool glass = illum == 4 || illum == 6 || illum == 7 || illum == 9;
-        EXPECT_EQ(m.transmission.strength, glass ? 0.5f : 0.0f) << illum;
+        EXPECT_EQ(m.transmission, glass ? 0.5f : 0.0f) << illum;
         EXPECT_EQ(m.ior, glass ? 1.33f : 1.5f) << illum;
         EXPECT_EQ(m.base_color, (glass ? Vec4{0.5f, 1, 0, 1} : Vec4{1, 1, 1, 1})) << illum;
-        EXPECT_EQ(scene.warnings.size(), glass ? 1u : 0u) << illum;
+        EXPECT_EQ(m.volume.thickness, illum == 6 || illum == 7 ? 1.0f : 0.0f) << illum;
+        EXPECT_EQ(m.mirror, illum >= 3 && illum <= 7 ? m.specular : (Vec3{0, 0, 0})) << illum;
+        EXPECT_TRUE(scene.warnings.empty()) << illum;
     }
-    EXPECT_EQ(material(load("newmtl m\nillum 7\n")).transmission.strength, 1);
-    EXPECT_EQ(material(load("newmtl m\nTf 0 0 0\nillum 7\nNi 0.5\n")).transmission.strength, 0);
+    EXPECT_EQ(material(load("newmtl m\nillum 7\n")).transmission, 1);
+    EXPECT_EQ(material(load("newmtl m\nTf 0 0 0\nillum 7\nNi 0.5\n")).transmission, 0);
 }
 
 // A factor is 1 for the sake of a map only where the map is there.

@@ -138,7 +138,7 @@ TEST(Validate, NamesThePlaceOfEachFault) {
         {"materials/0/sheen/color", [](Scene& s) { s.materials[0].sheen.color.z = -0.1f; }},
         {"materials/0/sheen/roughness_texture/uv_set",
          [](Scene& s) { s.materials[0].sheen.roughness_texture.uv_set = -1; }},
-        {"materials/0/transmission/strength", [](Scene& s) { s.materials[0].transmission.strength = kNan; }},
+        {"materials/0/transmission", [](Scene& s) { s.materials[0].transmission = kNan; }},
         {"materials/0/volume/thickness", [](Scene& s) { s.materials[0].volume.thickness = -1; }},
         {"materials/0/volume/attenuation_distance", [](Scene& s) { s.materials[0].volume.attenuation_distance = 0; }},
         {"materials/0/volume/attenuation_distance",
