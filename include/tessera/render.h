@@ -78,9 +78,9 @@ struct RenderOptions {
     // white for a scene's lights.
     std::optional<float> ambient;
     Shadows shadows = Shadows::kAuto;
-    int samples = 4;                   // per pixel, 1 .. 256, at fixed positions of 1/256 pixel
-    float point_size = 2;              // pixels, diameter of points: discs that face the camera, squares up to 2
-    float line_width = 1;              // pixels, along the minor axis of the picture (docs/rasterizer.md)
+    int samples = 4;       // per pixel, 1 .. 256, at fixed positions of 1/256 pixel
+    float point_size = 2;  // pixels, diameter of points: discs that face the camera, squares up to 2
+    float line_width = 1;  // pixels, along the minor axis of the picture (docs/rasterizer.md)
     // Of light that is traced: how often it is mirrored or refracted at most (0: never), and the contribution to a
     // sample below which it is not followed.
     int max_depth = 8;

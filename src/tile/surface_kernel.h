@@ -37,10 +37,9 @@ struct LaneVertices {
                 for (std::uint32_t lane = 0; lane < kWidth; lane += 2)
                     __builtin_prefetch(normals + 3 * std::size_t{lanes[lane]});
         if (!vertices.corners) {
-            if (!normals)
-                for (const auto& lanes : in_mesh)
-                    for (std::uint32_t lane = 0; lane < kWidth; lane += 2)
-                        __builtin_prefetch(mesh.positions + 3 * std::size_t{lanes[lane]});
+            for (const auto& lanes : in_mesh)
+                for (std::uint32_t lane = 0; lane < kWidth; lane += 2)
+                    __builtin_prefetch(mesh.positions + 3 * std::size_t{lanes[lane]});
         } else if (vertices.corners == mesh.triangles) {
             for (const auto& lanes : in_mesh)
                 for (std::uint32_t lane = 0; lane < kWidth; lane += 2)

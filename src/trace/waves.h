@@ -25,8 +25,8 @@ struct TransportScene {
     std::vector<float> instance_size;  // by instance: its largest coordinate in camera space
     // By instance: what straight light leaves of itself in it, where that is the same everywhere.
     std::vector<std::optional<Vec3T<float>>> even_transmittance;
-    bool simple;                       // nothing lets light through
-    bool shadows, bounces;             // whether they are wanted
+    bool simple;            // nothing lets light through
+    bool shadows, bounces;  // whether they are wanted
     int max_depth;
     float least;          // contribution
     float spread;         // of the cones of rays, per metre

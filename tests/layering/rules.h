@@ -14,8 +14,9 @@
 namespace tessera::layering {
 
 // In the order of the data: a folder includes itself and those before it.
-inline constexpr std::array<std::string_view, 13> kOrder{
-    "simd", "core", "image", "scene", "load", "geometry", "shading", "tile", "raster", "trace", "reference", "render", "cli"};
+inline constexpr std::array<std::string_view, 13> kOrder{"simd",      "core",    "image", "scene",  "load",
+                                                         "geometry",  "shading", "tile",  "raster", "trace",
+                                                         "reference", "render",  "cli"};
 inline constexpr std::size_t kLongestFile = 450, kLongestPublicHeader = 200;
 
 struct Home {
