@@ -1,6 +1,6 @@
 // A Whitted frame straight on Embree 3: primary rays, hard shadows and one mirror bounce with its shadows, 1920x1080 at
 // one sample, with no more shading than that. It is what a ray tracing engine is measured against.
-//     tessera_embree_whitted_bench [--scene NAME...] [--width N...] [--threads N] [-o PICTURE.ppm]
+//     tessera_embree_whitted_bench [--scene NAME...] [--width N...] [--threads N] [--robust] [-o PICTURE.ppm]
 // Width 1 is the textbook's recursion per pixel; packets go in waves through 16x16 tiles, with the rays that live on
 // moved together between the waves. A line of JSON each. Exit code 1 when packets do not do the work of single rays:
 // the same number of rays and the same picture.
@@ -24,7 +24,7 @@ struct Options {
     std::vector<std::string> scenes{"sphere100k", "hf100k"};
     std::vector<int> widths{1, 4, 8, 16};
     int threads = 1, repeats = 7;
-    bool incoherent = false;
+    bool incoherent = false, robust = false;
     std::string picture;
 };
 
@@ -52,7 +52,8 @@ void write_picture(const std::string& file, const std::vector<Pixel>& pixels) {
 // Whether all widths do the work of single rays.
 bool run_scene(const Options& options, const Device& device, const std::string& name) {
     const Scene scene = make_scene(name);
-    const RTCScene traced = new_scene(device, scene, RTC_BUILD_QUALITY_MEDIUM, RTC_SCENE_FLAG_NONE);
+    const RTCScene traced = new_scene(device, scene, RTC_BUILD_QUALITY_MEDIUM,
+                                      options.robust ? RTC_SCENE_FLAG_ROBUST : RTC_SCENE_FLAG_NONE);
     rtcCommitScene(traced);
     device.check();
     const Frame frame(scene, kTileSide);
@@ -92,6 +93,7 @@ int run(int argc, char** argv) {
     application.add_option("--threads", options.threads)->check(CLI::Range(1, 1024));
     application.add_option("--repeats", options.repeats)->check(CLI::Range(1, 1000));
     application.add_flag("--incoherent", options.incoherent, "without the flag for coherent packets");
+    application.add_flag("--robust", options.robust, "Embree's watertight intersection");
     application.add_option("-o,--output", options.picture, "the last picture, as PPM");
     CLI11_PARSE(application, argc, argv);
 

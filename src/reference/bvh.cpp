@@ -165,8 +165,9 @@ void Bvh::traverse(const CastRay& ray, double t_min, double t_max,
             double a = (component(box.min, axis) - from) * scale, b = (component(box.max, axis) - from) * scale;
             if (a > b) std::swap(a, b);
             // A ray within a slab's own plane gives NaN: such a slab decides nothing.
-            if (a == a) enter = std::max(enter, a - 1e-12 * std::fabs(a));
-            if (b == b) leave = std::min(leave, b + 1e-12 * std::fabs(b));
+            constexpr double kLess = 1 - 1e-12, kMore = 1 + 1e-12;
+            if (a == a) enter = std::max(enter, a * (a < 0 ? kMore : kLess));
+            if (b == b) leave = std::min(leave, b * (b < 0 ? kLess : kMore));
         }
         return enter <= leave ? enter : std::numeric_limits<double>::infinity();
     };

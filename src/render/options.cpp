@@ -150,7 +150,8 @@ TransportSettings transport_settings(const RenderOptions& options, const FilmVie
     return settings;
 }
 
-ReferenceTransport reference_transport(const RenderOptions& options, const FilmView& film) {
+std::optional<ReferenceTransport> reference_transport(const RenderOptions& options, const FilmView& film) {
+    if (!traces_shadows(options) && !traces_bounces(options)) return std::nullopt;
     const TransportSettings s = transport_settings(options, film);
     ReferenceTransport t{s.shadows, s.bounces, s.max_depth, s.least, {}};
     std::copy_n(s.background, 3, t.background);

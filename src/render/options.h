@@ -11,6 +11,7 @@
 #include "trace/engine.h"
 
 #include <mutex>
+#include <optional>
 #include <vector>
 
 namespace tessera {
@@ -32,7 +33,8 @@ bool is_parallel(Engine engine);
 bool traces_shadows(const RenderOptions& options);
 bool traces_bounces(const RenderOptions& options);
 TransportSettings transport_settings(const RenderOptions& options, const FilmView& film);
-ReferenceTransport reference_transport(const RenderOptions& options, const FilmView& film);
+// Nothing where no light is traced.
+std::optional<ReferenceTransport> reference_transport(const RenderOptions& options, const FilmView& film);
 
 // The tile rasterizer's settings for all samples, under `control`.
 RasterSettings raster_settings(const RenderOptions& options, const FilmView& film, const RunControl& control);

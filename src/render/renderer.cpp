@@ -87,6 +87,9 @@ void Renderer::Impl::draw(const Shot& now, const Shot& earlier, const Shot& late
     prepared.move_to(now.moment);
     frame.keep_nodes = options.want_motion;
     make_frame(prepared, now.view, options.width, options.height, stroke_style(options), frame);
+    if ((options.engine == Engine::kTrace || options.engine == Engine::kReferenceTrace) && !is_square(frame.projection))
+        throw Error(ErrorCode::kUsage,
+                    std::string(name(options.engine)) + " needs a picture that is square to the camera's axes");
     shading.light(scene, frame, options);
     watch.phase("evaluate");
 
@@ -193,8 +196,6 @@ void Renderer::Impl::draw_tiles(const Watchdog& watchdog, Stopwatch& watch, Rend
 // The reference engines: pass by pass, everything in full.
 void Renderer::Impl::draw_reference(const Watchdog& watchdog, Stopwatch& watch, RenderResult& result) {
     const bool tracing = options.engine == Engine::kReferenceTrace;
-    if (tracing && !is_square(frame.projection))
-        throw Error(ErrorCode::kUsage, "reference-trace needs a picture that is square to the camera's axes");
     ReferenceEngine engine =
         tracing ? ReferenceEngine(frame, shading.context(), reference_transport(options, shading.film(options)))
                 : ReferenceEngine(frame, shading.context());

@@ -57,7 +57,7 @@ template <class F>
 TESSERA_INLINE Refraction<F> refracted(const Vec3T<F>& view, const Vec3T<F>& normal, const Vec3T<F>& ng, F eta) {
     const F zero(0.0f), one(1.0f);
     const F c = saturate(dot(normal, view));
-    const F k = one - eta * eta * (one - c * c);
+    const F k = (one - eta * eta) + (eta * eta) * (c * c);
     const F t = sqrt(max(k, zero));
     const F across = (eta * c - t) / (eta * c + t), along = (c - eta * t) / (c + eta * t);
     const F part = F(0.5f) * (across * across + along * along);

@@ -81,10 +81,8 @@ inline constexpr int kFew = kLanes<Float> < 4 ? kLanes<Float> : 4;
 TESSERA_INLINE void blend_samples(const SurfaceLayout& l, Mask mask, const SurfaceSample<Float>& from,
                                   SurfaceSample<Float>& to) {
     for (int k = 0; k < l.count; ++k) to.value[k] = select(mask, from.value[k], to.value[k]);
-    if (l.tangent >= 0) {
-        to.side = select(mask, from.side, to.side);
-        to.bitangent_sign = select(mask, from.bitangent_sign, to.bitangent_sign);
-    }
+    to.side = select(mask, from.side, to.side);
+    if (l.tangent >= 0) to.bitangent_sign = select(mask, from.bitangent_sign, to.bitangent_sign);
     bool any_uv = false;
     for (int set = 0; set < kMaxUvSets; ++set) {
         if (l.uv[set] < 0) continue;

@@ -16,8 +16,9 @@ struct SampleList {
     const std::uint32_t* ordinal;   // of the tile's triangles, from 1
     std::uint32_t count;            // the arrays are padded by kMaxLanes
     const TileTriangle* triangles;  // by ordinal - 1
-    std::uint32_t triangle_count;
-    const float* records;            // surface records of those that are named
+    const std::uint32_t* seen;      // ordinals of those that have a record, those of an instance together
+    std::uint32_t seen_count;
+    const float* records;            // surface records
     const std::uint32_t* record_of;  // by ordinal: where in `records`
 };
 

@@ -172,9 +172,16 @@ void Tile::shade_list_traced(SamplePosition offset, PointShader& shader) {
         batch_x_[i] = 256 * (area_.x0 + static_cast<std::int32_t>(x)) + offset.x;
         batch_y_[i] = 256 * (area_.y0 + static_cast<std::int32_t>(y)) + offset.y;
     }
-    const SampleList samples{
-        batch_x_.data(),           batch_y_.data(),         point_ordinal_.data(), static_cast<std::uint32_t>(count),
-        visible_.triangles.data(), visible_.triangle_count, records_.data(),       record_of_.data()};
+    SampleList samples{};
+    samples.x = batch_x_.data();
+    samples.y = batch_y_.data();
+    samples.ordinal = point_ordinal_.data();
+    samples.count = static_cast<std::uint32_t>(count);
+    samples.triangles = visible_.triangles.data();
+    samples.seen = list_.data();
+    samples.seen_count = seen_count_;
+    samples.records = records_.data();
+    samples.record_of = record_of_.data();
     shader.shade(*task_, samples,
                  {point_color_[0].data(), point_color_[1].data(), point_color_[2].data(), point_color_[3].data()});
 }

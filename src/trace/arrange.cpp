@@ -6,15 +6,21 @@
 
 namespace tessera {
 
-// The planes of all triangles that the samples show.
+// The planes of all triangles that the samples may show.
 void WaveShader::find_planes(const TileTask& task, const SampleList& samples) {
-    float* const planes = planes_.reserve(4 * (std::size_t{samples.triangle_count} + kMaxLanes));
-    for (std::uint32_t first = 0; first < samples.triangle_count;) {
-        const std::uint32_t instance = samples.triangles[first].instance;
+    const std::uint32_t* const seen = samples.seen;
+    const std::uint32_t count = samples.seen_count;
+    if (count == 0) return;
+    float* const planes = planes_.reserve(4 * (std::size_t{count} + kMaxLanes));
+    std::uint32_t* const plane_of = plane_of_.reserve(std::size_t{seen[count - 1]} + 1);  // ordinals rise
+    for (std::uint32_t first = 0; first < count;) {
+        const std::uint32_t instance = samples.triangles[seen[first] - 1].instance;
         plane_triangles_.clear();
         std::uint32_t end = first;
-        for (; end < samples.triangle_count && samples.triangles[end].instance == instance; ++end)
-            plane_triangles_.push_back(samples.triangles[end].triangle);
+        for (; end < count && samples.triangles[seen[end] - 1].instance == instance; ++end) {
+            plane_triangles_.push_back(samples.triangles[seen[end] - 1].triangle);
+            plane_of[seen[end]] = 4 * end;
+        }
         FlatPlanesJob job{};
         job.instance = &task.frame.instances[instance];
         job.triangles = plane_triangles_.data();

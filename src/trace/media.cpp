@@ -56,7 +56,7 @@ void WaveShader::choose_rays(const TileTask& task, Wave& wave, bool camera) {
                 for (int c = 0; c < 3; ++c) wave.points[kEtaR + c][p] = 1.0f;
             const bool may_pass = state.passes < kMostPasses, may_turn = state.depth < scene_->max_depth;
             const bool splits = disperses && state.channel == 0 && !clear;
-            (may_turn ? bounding_ : stopped_)[p] = ~0u;
+            if (!clear) (may_turn ? bounding_ : stopped_)[p] = ~0u;
             if (transmits && (clear ? may_pass : may_turn)) (splits ? dispersed_ : whole_)[p] = ~0u;
             if (blends && may_pass) blended_[p] = ~0u;
             has_dispersed_ |= splits;

@@ -71,7 +71,7 @@ inline void primary_surfaces_as(const PrimarySurfacesJob& job) {
         if (layout.tangent >= 0) s.normal = shading_normal(material, s);
         Float on_plane;
         load_records(
-            [&](int lane) { return job.planes + 4 * std::size_t{job.list[i + static_cast<std::uint32_t>(lane)] - 1}; },
+            [&](int lane) { return job.planes + job.plane_of[job.list[i + static_cast<std::uint32_t>(lane)]]; },
             s.geometric_normal.x, s.geometric_normal.y, s.geometric_normal.z, on_plane);
         s.position = onto_plane(s.position, s.geometric_normal, on_plane);
         s.geometric_normal = s.geometric_normal * s.side;

@@ -123,9 +123,10 @@ struct PrimarySurfacesJob {
     SurfaceLayout layout;
     const float* records;
     const std::uint32_t* record_of;  // by ordinal: where in `records`
-    const float* planes;             // by ordinal - 1
-    const std::int32_t *x, *y;       // picture positions
-    const std::uint32_t* list;       // ordinals
+    const float* planes;
+    const std::uint32_t* plane_of;  // by ordinal: where in `planes`
+    const std::int32_t *x, *y;      // picture positions
+    const std::uint32_t* list;      // ordinals
     std::uint32_t count, first;
     float width_at_one, width;  // of the cone at distance 1 along the view axis, or everywhere
     WaveArrays points;

@@ -84,6 +84,7 @@ void WaveShader::take_samples(const TileTask& task, const SampleList& samples, s
         job.records = samples.records;
         job.record_of = samples.record_of;
         job.planes = planes_.data();
+        job.plane_of = plane_of_.data();
         job.x = x_.data() + b.first;
         job.y = y_.data() + b.first;
         job.list = ordinal_.data() + b.first;

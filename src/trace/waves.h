@@ -73,7 +73,8 @@ class WaveShader final : public PointShader {
     std::vector<std::unique_ptr<Wave>> waves_;
     WavePacket packet_{kMeetsSolid | kMeetsSheer}, shadow_packet_{kMeetsSolid};
     // arrange.cpp
-    Buffer<float> planes_;                        // of triangles, by ordinal - 1
+    Buffer<std::uint32_t> plane_of_;              // by ordinal: where in planes_
+    Buffer<float> planes_;                        // of triangles
     std::vector<std::uint32_t> plane_triangles_;  // of an instance
     std::vector<std::uint32_t> slot_of_instance_, instances_, counts_;
     Buffer<std::int32_t> x_, y_;

@@ -145,7 +145,7 @@ void KernelMesh::place_triangle(Random& random, Place place, std::uint32_t trian
 
 KernelWorld::KernelWorld(Random& random) {
     constexpr int kSizes[kTextureSlots][3] = {{64, 32, 7}, {1, 1, 1},   {37, 5, 6}, {16, 16, 5},
-                                              {128, 1, 8}, {32, 64, 7}, {9, 9, 4}};
+                                              {128, 1, 8}, {32, 64, 7}, {9, 9, 4},  {16, 8, 5}};
     for (std::size_t i = 0; i < kTextureSlots; ++i)
         textures_.push_back(
             std::make_unique<TestTexture>(kSizes[i][0], kSizes[i][1], kSizes[i][2], static_cast<std::uint32_t>(i + 1)));
