@@ -3,6 +3,8 @@
 // the recursion of Whitted 1980, "An improved illumination model for shaded display", breadth first.
 #include "trace/waves.h"
 
+#include <tessera/error.h>
+
 #include "tile/tile.h"
 
 #include <algorithm>
@@ -12,6 +14,8 @@ namespace tessera {
 namespace {
 
 constexpr std::uint32_t kSamplesAtOnce = 1024;  // whose waves stay in the second-level cache
+// Glass doubles its rays at every step: more points than that in one wave (some 120 MB) are refused.
+constexpr std::uint32_t kMostPoints = 1u << 18;
 
 // The point that a ray started from.
 std::uint32_t point_of(const Wave& wave, std::uint32_t ray) {
@@ -130,6 +134,10 @@ void WaveShader::shade_points(const TileTask& task, Wave& wave, bool camera) {
 bool WaveShader::send_on(const TileTask& task, Wave& from, Wave& to, int depth) {
     to.ray_count = 0;
     if (!scene_->bounces || from.point_count == 0) return false;
+    if (from.point_count > kMostPoints)
+        throw Error(ErrorCode::kLimit,
+                    "the rays of traced light need more memory than the limit allows: let them go on "
+                    "less often (max_depth), or not where they count for little (min_contribution)");
     to.reserve_rays(5 * from.point_count);
     SpawnJob job{};
     job.points = from.points;

@@ -135,6 +135,24 @@ TEST(TracedLimits, OddTrianglesAreDrawnAsTheReferenceDoes) {
     }
 }
 
+// Within a ball of glass every ray becomes two, and nothing ends them here but the limit.
+TEST(TracedLimits, RaysWithoutEndAreRefused) {
+    Scene scene;
+    place(scene, sphere(16, add_material(scene, glass(1.5f))), {});
+    RenderOptions o = quick(Engine::kTrace, 24, 24);
+    o.max_depth = 64;
+    o.min_contribution = 0;
+    try {
+        render(scene, o);
+        FAIL() << "drawn";
+    } catch (const Error& e) {
+        EXPECT_EQ(e.code(), ErrorCode::kLimit);
+        EXPECT_NE(std::string(e.what()).find("max_depth"), std::string::npos) << e.what();
+    }
+    o.max_depth = 6;
+    EXPECT_GT(render(scene, o).stats.refracted_rays, 1000u);
+}
+
 TEST(TracedLimits, HugeNumbersGiveNumbers) {
     for (const float far : {1e4f, 1e9f, 1e15f, 1e20f, 1e30f, 3e38f})
         for (std::uint32_t seed = 1; seed <= 4; ++seed)
