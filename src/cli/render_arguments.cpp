@@ -173,7 +173,7 @@ void add_picture_options(CLI::App& app, RenderArguments& a) {
     option("Picture", "--variant", a.variant, "NAME|INDEX", "the scene's set of materials of that name");
     option("Picture", "--engine", a.engine, "NAME",
            "raster (the default), trace (rays: shadows, mirrors, glass), hybrid (raster for what is seen, rays for its "
-           "light), reference-raster or reference-trace (the same bits, slowly)");
+           "light), reference-raster or reference-trace (plain and slow: what the others are held to)");
     option("Picture", "--samples", a.samples, "N", "samples per pixel, 1 .. 256 (default 4)");
     option("Picture", "--filter", a.filter, "NAME",
            "box (default: the mean of a pixel's samples), tent, gaussian or mitchell, which weigh its neighbours' too");

@@ -48,13 +48,15 @@ ShadedPoint<float> LightTracerReference::shade(std::uint32_t triangle, SamplePos
         p[i] = Vec3T<float>::load(instance.mesh.positions + 3 * std::size_t{corners[i]});
     const Vec3T<float> normal = geometric_normal(instance, p[0], p[1], p[2]);
     s.position = onto_plane(s.position, normal, dot(normal, transform_point(instance.object_to_camera, p[0])));
+    turn_to_viewer(s, normal);
     const ProjectionView& picture = frame_.projection;
     const float pixel = 2.0f / (picture.height * picture.scale_y);
     point.footprint = picture.orthographic ? pixel - s.position.z * 0.0f : 0.0f - s.position.z * pixel;
     point.size = coordinate_size(s.position, sizes_[static_cast<std::size_t>(&instance - frame_.instances.data())]);
     float alpha = 1;
     const TracedLight found = shade_point(point, Ray{}, true, alpha);
-    const float clear = std::min({found.passed.x, found.passed.y, found.passed.z});
+    const bool blends = context_.materials[material_of(triangle)].alpha_mode == AlphaMode::kBlend;
+    const float clear = blends ? 0.0f : std::min(std::min({found.passed.x, found.passed.y, found.passed.z}), 1.0f);
     const Vec3T<float> background = Vec3T<float>::load(settings_.background);
     return {found.light + (found.passed - Vec3T<float>::splat(clear)) * background, alpha * (1.0f - clear)};
 }
@@ -134,6 +136,7 @@ TracedLight LightTracerReference::shade_point(const Point& point, const Ray& fro
     if (blends && may_pass) {
         Ray next = from;
         ++next.passes;
+        if (transmits && !material.thin) next.media = from.media.beyond(m, s.side > 0.0f);
         follow(Vec3T<float>::splat(1.0f - alpha), -s.view, next);
     }
     return sum;
@@ -158,19 +161,11 @@ TracedShade<float> LightTracerReference::shade_here(const Point& point, const Bo
     return shaded;
 }
 
-// Ambient light, or for light that only passed surfaces the background; nothing at the end of a way without end.
+// Ambient light, or for light that only passed surfaces the background. What never leaves a medium was in no body.
 TracedLight LightTracerReference::miss(const Ray& ray) const {
     const Vec3T<float> none = Vec3T<float>::splat(0.0f);
-    TracedLight found{none, none};
-    if (ray.straight)
-        found.passed = Vec3T<float>::splat(1.0f);
-    else
-        found.light = radiance_around(context_, ray.cone.direction);
-    const std::uint32_t medium = ray.media.current(context_.materials);
-    if (medium == kNoMedium) return found;
-    const float* absorbs = context_.materials[medium].absorption;
-    const Vec3T<float> left{absorbs[0] > 0 ? 0.0f : 1.0f, absorbs[1] > 0 ? 0.0f : 1.0f, absorbs[2] > 0 ? 0.0f : 1.0f};
-    return {found.light * left, found.passed * left};
+    if (ray.straight) return {none, Vec3T<float>::splat(1.0f)};
+    return {radiance_around(context_, ray.cone.direction), none};
 }
 
 RaySurface<float> LightTracerReference::surface_at(std::uint32_t triangle, const ConeRay<float>& ray, float spread) {

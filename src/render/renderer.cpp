@@ -63,8 +63,10 @@ void Renderer::Impl::warn_of_transmission() {
     const std::vector<bool> used = prepared.used_materials();
     for (std::size_t m = 0; m < scene.materials.size(); ++m)
         if (used[m] && scene.materials[m].transmission > 0)
-            return warnings.push_back("material " + std::to_string(m) + " lets light through, which " +
-                                      name(options.engine) + " draws as opaque; the engines trace and hybrid do not");
+            return warnings.push_back(
+                "material " + std::to_string(m) +
+                " lets light through, and is drawn as opaque: that takes --engine trace or hybrid "
+                "and a depth of traced light above 0");
 }
 
 Renderer::Renderer(const Scene& scene, const RenderOptions& options) {

@@ -14,12 +14,7 @@ struct TracedShade {
     Vec3T<F> reflected, entering;  // factors on the light that is met along the mirrored and refracted rays
 };
 
-// Which materials have any use for rays.
-TESSERA_INLINE bool may_mirror(const MaterialView& m) {
-    const ShadingFamily family = family_of(m.model);
-    if (family == ShadingFamily::kTextbook) return m.mirror[0] > 0 || m.mirror[1] > 0 || m.mirror[2] > 0;
-    return family == ShadingFamily::kMicrofacet;
-}
+// Which materials let light through.
 TESSERA_INLINE bool may_transmit(const MaterialView& m) {
     return m.transmission > 0 && m.model != ShadingModel::kUnlit;
 }
@@ -92,12 +87,12 @@ TESSERA_INLINE void shade_traced(const ShadingContext& context, const MaterialVi
             if constexpr (kFamily == ShadingFamily::kTextbook) {
                 out[k].reflected = Vec3T<F>::load(m.mirror);
                 if (m.transmission == 0.0f) continue;
-                // Where nothing can leave, all of it is mirrored.
+                // What could enter is mirrored or enters as Fresnel says; kr counts for the rest.
                 const SurfacePoint<F> s = batch.point(k);
-                const F whole = refracted(s.view, s.normal, s.geometric_normal, batch.eta(k)).reflected;
-                const F kept = select(whole == F(1.0f), F(m.transmission), F(0.0f));
-                out[k].reflected = out[k].reflected + Vec3T<F>::splat(kept);
-                out[k].entering = Vec3T<F>::load(m.tint) * (F(m.transmission) - kept);
+                const F fresnel = refracted(s.view, s.normal, s.geometric_normal, batch.eta(k)).reflected;
+                out[k].reflected =
+                    out[k].reflected * F(1.0f - m.transmission) + Vec3T<F>::splat(fresnel * F(m.transmission));
+                out[k].entering = Vec3T<F>::load(m.tint) * ((F(1.0f) - fresnel) * F(m.transmission));
             }
         }
     }

@@ -31,6 +31,16 @@ TESSERA_INLINE Vec3T<F> onto_plane(const Vec3T<F>& p, const Vec3T<F>& ng, F on_p
     return p - ng * (dot(ng, p) - on_plane);
 }
 
+// Turns a point to the side from which it is seen, whatever snapping made of its triangle: `ng` is the normal of the
+// front.
+template <class F>
+TESSERA_INLINE void turn_to_viewer(SurfacePoint<F>& s, const Vec3T<F>& ng) {
+    const F side = select(dot(ng, s.view) < F(0.0f), F(-1.0f), F(1.0f));
+    s.normal = s.normal * (side * s.side);
+    s.side = side;
+    s.geometric_normal = ng * side;
+}
+
 // A direction that points to the side of `ng` at least a little (bent normals may turn it into the surface).
 template <class F>
 TESSERA_INLINE Vec3T<F> kept_above(const Vec3T<F>& d, const Vec3T<F>& ng) {

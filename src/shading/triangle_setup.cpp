@@ -203,4 +203,28 @@ void make_surface_record(const InstanceView& instance, std::uint32_t index, cons
     }
 }
 
+void make_even_record(const InstanceView& instance, std::uint32_t index, const ProjectionView& projection,
+                      const SurfaceLayout& layout, float* record) {
+    Corner<float> corners[3];
+    for (int i = 0; i < 3; ++i)
+        corners[i] = fetch_corner(instance.mesh, instance.mesh.triangles[3 * std::size_t{index} + i]);
+    const Vec3T<float> own = geometric_normal(instance, corners[0].position, corners[1].position, corners[2].position);
+    const Vec3T<float> at = transform_point(instance.object_to_camera, corners[0].position);
+    const float along = projection.orthographic ? -own.z : dot(own, at);
+    const float w = to_clip(instance.object_to_clip, corners[0].position).w;
+    record[0] = record[1] = 0;
+    record[2] = along > 0 ? -1.0f : 1.0f;
+    record[3] = layout.tangent >= 0 ? corners[0].tangent.w * instance.handedness : 1.0f;
+    Vec3T<float> normals[3];
+    camera_normals(instance, corners, normals);
+    float numbers[kMaxSurfacePlanes];
+    numbers[0] = 1;
+    corner_numbers(instance, layout, corners[0], record[2], normals[0], numbers);
+    for (int k = 0; k < layout.count; ++k) {
+        float* plane = record + kSurfaceHeader + 3 * k;
+        plane[0] = w > 0 ? numbers[k] / w : numbers[k];
+        plane[1] = plane[2] = 0;
+    }
+}
+
 }  // namespace tessera

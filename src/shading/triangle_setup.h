@@ -53,4 +53,9 @@ Corner<float> fetch_corner(const MeshView& mesh, std::uint32_t vertex);
 void make_surface_record(const InstanceView& instance, std::uint32_t index, const TriangleSetup& setup,
                          const ProjectionView& projection, const SurfaceLayout& layout, float* record);
 
+// The same for one that the rasterizer does not see (no area after snapping), but rays may: everywhere its first
+// corner, from the side that the triangle itself shows.
+void make_even_record(const InstanceView& instance, std::uint32_t index, const ProjectionView& projection,
+                      const SurfaceLayout& layout, float* record);
+
 }  // namespace tessera

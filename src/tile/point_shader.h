@@ -12,9 +12,9 @@ struct TileTask;
 
 // Samples to shade: a triangle seen at a picture position each.
 struct SampleList {
-    const std::int32_t *x, *y;      // 1/256 pixel
-    const std::uint32_t* ordinal;   // of the tile's triangles, from 1
-    std::uint32_t count;            // the arrays are padded by kMaxLanes
+    const std::int32_t *x, *y;     // 1/256 pixel
+    const std::uint32_t* ordinal;  // of the tile's triangles, from 1
+    std::uint32_t count;
     const TileTriangle* triangles;  // by ordinal - 1
     const std::uint32_t* seen;      // ordinals of those that have a record, those of an instance together
     std::uint32_t seen_count;

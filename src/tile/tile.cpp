@@ -11,7 +11,10 @@ void make_record(const InstanceView& instance, std::uint32_t triangle, const Pro
                  const SurfaceLayout& layout, float* record) {
     TriangleSetup setup;
     setup_triangle(instance, triangle, projection, setup);
-    if (setup.visible()) make_surface_record(instance, triangle, setup, projection, layout, record);
+    if (setup.visible())
+        make_surface_record(instance, triangle, setup, projection, layout, record);
+    else
+        make_even_record(instance, triangle, projection, layout, record);
 }
 
 // The first instance that each one may share a batch with.

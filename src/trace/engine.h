@@ -22,7 +22,7 @@ struct TransportSettings {
 
 struct TransportCounters {
     std::uint64_t shadow_rays = 0, mirrored_rays = 0, refracted_rays = 0, straight_rays = 0;
-    std::uint64_t ended_by_depth = 0, ended_by_contribution = 0;  // points whose light went no further
+    std::uint64_t ended_by_depth = 0, ended_by_contribution = 0;  // rays that did not go on
 };
 
 struct TraceCounters {

@@ -20,7 +20,13 @@ void WaveShader::find_light(Wave& wave) {
     ShadowRaysJob job{};
     job.shading = scene_->shading;
     job.points = wave.points;
-    job.used = wave.used.data();
+    // Unlit surfaces ask for no light.
+    std::uint32_t* const lit = lit_.reserve(wave.point_count + kMaxLanes);
+    std::copy_n(wave.used.data(), wave.point_count, lit);
+    for (const PointBatch& b : wave.batches)
+        if (scene_->shading->materials[scene_->frame->instances[b.instance].material].model == ShadingModel::kUnlit)
+            std::fill_n(lit + b.first, b.count, 0u);
+    job.used = lit;
     job.count = wave.point_count;
     job.rays = shadow_rays_;
     job.t_far = shadow_far_.reserve(shadow_rays_.stride);

@@ -82,8 +82,12 @@ void WaveShader::absorb(Wave& wave) const {
 RayState WaveShader::next_state(const TileTask& task, const Wave& from, std::uint32_t point,
                                 const SpawnJob& job) const {
     RayState state = from.states[from.ray[point]];
+    const std::uint32_t m = task.frame.instances[from.instance[from.ray[point]]].material;
+    const MaterialView& material = scene_->shading->materials[m];
+    const bool body = may_transmit(material) && !material.thin, entering = from.points[kFacing][point] > 0.0f;
     if (job.kind == SpawnJob::Kind::kStraight) {
         ++state.passes;
+        if (body) state.media = state.media.beyond(m, entering);
         return state;
     }
     if (job.kind == SpawnJob::Kind::kMirrored) {
@@ -91,8 +95,7 @@ RayState WaveShader::next_state(const TileTask& task, const Wave& from, std::uin
         state.straight = false;
         return state;
     }
-    const std::uint32_t m = task.frame.instances[from.instance[from.ray[point]]].material;
-    if (!scene_->shading->materials[m].thin) state.media = state.media.beyond(m, from.points[kFacing][point] > 0.0f);
+    if (body) state.media = state.media.beyond(m, entering);
     ++(clear_[point] ? state.passes : state.depth);
     if (job.channels[0] != job.channels[1] || job.channels[1] != job.channels[2])
         state.channel = static_cast<std::uint8_t>(job.channels[0] > 0 ? 1 : job.channels[1] > 0 ? 2 : 3);

@@ -69,12 +69,13 @@ inline void primary_surfaces_as(const PrimarySurfacesJob& job) {
         SurfacePoint<Float> s = surface_point(layout, rays, sample, x, y, footprint_scale);
         s.side = sample.side;
         if (layout.tangent >= 0) s.normal = shading_normal(material, s);
+        Vec3T<Float> front;
         Float on_plane;
         load_records(
             [&](int lane) { return job.planes + job.plane_of[job.list[i + static_cast<std::uint32_t>(lane)]]; },
-            s.geometric_normal.x, s.geometric_normal.y, s.geometric_normal.z, on_plane);
-        s.position = onto_plane(s.position, s.geometric_normal, on_plane);
-        s.geometric_normal = s.geometric_normal * s.side;
+            front.x, front.y, front.z, on_plane);
+        s.position = onto_plane(s.position, front, on_plane);
+        turn_to_viewer(s, front);
         const std::uint32_t at = job.first + i;
         store_point(job.points, layout, at, s);
         store(job.points[kFootprint] + at, Float(job.width) - s.position.z * Float(job.width_at_one));

@@ -6,7 +6,8 @@
 
 namespace tessera {
 
-// Nothing is there: ambient light, or for light that only passed surfaces the background.
+// Nothing is there: ambient light, or for light that only passed surfaces the background. What never leaves a medium
+// was in no body.
 void WaveShader::miss(Wave& wave, std::uint32_t ray) const {
     float light[3] = {0, 0, 0}, passed[3] = {0, 0, 0};
     const RayState state = scene_->simple ? RayState{} : wave.states[ray];
@@ -18,13 +19,7 @@ void WaveShader::miss(Wave& wave, std::uint32_t ray) const {
             Vec3T<float>{wave.rays[kDirectionX][ray], wave.rays[kDirectionY][ray], wave.rays[kDirectionZ][ray]});
         light[0] = around.x, light[1] = around.y, light[2] = around.z;
     }
-    const std::uint32_t medium = state.media.current(scene_->shading->materials);
-    for (std::size_t c = 0; c < 3; ++c) {
-        // The way through a medium without an end.
-        const bool dark = medium != kNoMedium && scene_->shading->materials[medium].absorption[c] > 0.0f;
-        wave.light[c][ray] = dark ? 0.0f : light[c];
-        wave.passed[c][ray] = dark ? 0.0f : passed[c];
-    }
+    for (std::size_t c = 0; c < 3; ++c) wave.light[c][ray] = light[c], wave.passed[c][ray] = passed[c];
 }
 
 // Cut-outs and blended surfaces before what a ray has hit: the nearest one that is there is hit instead.

@@ -14,7 +14,8 @@ namespace tessera {
 namespace {
 
 constexpr std::uint32_t kSamplesAtOnce = 1024;  // whose waves stay in the second-level cache
-// Glass doubles its rays at every step: more points than that in one wave (some 120 MB) are refused.
+// Glass doubles its rays at every step. Samples whose waves would have more points than that (some 120 MB) are taken
+// fewer at a time.
 constexpr std::uint32_t kMostPoints = 1u << 18;
 
 // The point that a ray started from.
@@ -33,10 +34,25 @@ void WaveShader::begin(const TransportScene& scene) {
 void WaveShader::shade(const TileTask& task, const SampleList& samples, float* const (&color)[4]) {
     find_planes(task, samples);
     for (std::uint32_t first = 0; first < samples.count; first += kSamplesAtOnce)
-        shade_samples(task, samples, first, std::min(kSamplesAtOnce, samples.count - first), color);
+        shade_part(task, samples, first, std::min(kSamplesAtOnce, samples.count - first), color);
 }
 
-void WaveShader::shade_samples(const TileTask& task, const SampleList& samples, std::uint32_t first,
+void WaveShader::shade_part(const TileTask& task, const SampleList& samples, std::uint32_t first, std::uint32_t count,
+                            float* const (&color)[4]) {
+    task.settings.checkpoint(0.0);
+    const TransportCounters before = counters;
+    if (shade_samples(task, samples, first, count, color)) return;
+    counters = before;
+    if (count == 1)
+        throw Error(ErrorCode::kLimit,
+                    "the rays of a single sample need more memory than a thread is given: let them go "
+                    "on less often (max_depth), or not where they count for little (min_contribution)");
+    shade_part(task, samples, first, count / 2, color);
+    shade_part(task, samples, first + count / 2, count - count / 2, color);
+}
+
+// False where there are too many rays.
+bool WaveShader::shade_samples(const TileTask& task, const SampleList& samples, std::uint32_t first,
                                std::uint32_t count, float* const (&color)[4]) {
     const auto wave = [this](std::size_t n) -> Wave& {
         while (waves_.size() <= n) waves_.push_back(std::make_unique<Wave>());
@@ -44,14 +60,18 @@ void WaveShader::shade_samples(const TileTask& task, const SampleList& samples, 
     };
     take_samples(task, samples, first, count);
     shade_points(task, wave(0), true);
-    std::size_t last = 0;
+    std::size_t last = 0, points = wave(0).point_count;
     while (send_on(task, wave(last), wave(last + 1), static_cast<int>(last))) {
         ++last;
+        points += wave(last).ray_count;
+        if (points > kMostPoints) return false;
+        task.settings.checkpoint(0.0);
         trace(task, wave(last), last == 1);
         shade_points(task, wave(last), false);
     }
     for (; last > 0; --last) gather(wave(last), wave(last - 1));
     write(first, color);
+    return true;
 }
 
 // The first wave: points of the picture, through the rasterizer's surface function.
@@ -134,10 +154,6 @@ void WaveShader::shade_points(const TileTask& task, Wave& wave, bool camera) {
 bool WaveShader::send_on(const TileTask& task, Wave& from, Wave& to, int depth) {
     to.ray_count = 0;
     if (!scene_->bounces || from.point_count == 0) return false;
-    if (from.point_count > kMostPoints)
-        throw Error(ErrorCode::kLimit,
-                    "the rays of traced light need more memory than the limit allows: let them go on "
-                    "less often (max_depth), or not where they count for little (min_contribution)");
     to.reserve_rays(5 * from.point_count);
     SpawnJob job{};
     job.points = from.points;
@@ -212,9 +228,12 @@ void WaveShader::gather(const Wave& from, Wave& to) const {
 }
 
 // Light that passes to the background makes the sample transparent by what passes in every channel; the rest of it is
-// the background's light, coloured.
+// the background's light, coloured. The alpha of a blended surface is its own.
 void WaveShader::write(std::uint32_t first, float* const (&color)[4]) const {
     const Wave& wave = *waves_[0];
+    const auto blends = [this](std::uint32_t instance) {
+        return scene_->shading->materials[scene_->frame->instances[instance].material].alpha_mode == AlphaMode::kBlend;
+    };
     if (scene_->simple) {
         for (std::size_t c = 0; c < 3; ++c) std::copy_n(wave.light[c].data(), wave.ray_count, color[c] + first);
         std::fill_n(color[3] + first, wave.ray_count, 1.0f);
@@ -223,7 +242,8 @@ void WaveShader::write(std::uint32_t first, float* const (&color)[4]) const {
     for (std::uint32_t p = 0; p < wave.point_count; ++p) {
         if (!wave.used[p]) continue;
         const std::uint32_t ray = wave.ray[p];
-        const float clear = std::min({wave.passed[0][ray], wave.passed[1][ray], wave.passed[2][ray]});
+        const float least = std::min({wave.passed[0][ray], wave.passed[1][ray], wave.passed[2][ray]});
+        const float clear = blends(wave.instance[ray]) ? 0.0f : std::min(least, 1.0f);
         for (std::size_t c = 0; c < 3; ++c)
             color[c][first + ray] = wave.light[c][ray] + (wave.passed[c][ray] - clear) * scene_->background[c];
         color[3][first + ray] = wave.shades[kAlpha][p] * (1.0f - clear);

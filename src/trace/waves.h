@@ -43,7 +43,9 @@ class WaveShader final : public PointShader {
 
   private:
     // waves.cpp
-    void shade_samples(const TileTask& task, const SampleList& samples, std::uint32_t first, std::uint32_t count,
+    void shade_part(const TileTask& task, const SampleList& samples, std::uint32_t first, std::uint32_t count,
+                    float* const (&color)[4]);
+    bool shade_samples(const TileTask& task, const SampleList& samples, std::uint32_t first, std::uint32_t count,
                        float* const (&color)[4]);
     void take_samples(const TileTask& task, const SampleList& samples, std::uint32_t first, std::uint32_t count);
     void shade_points(const TileTask& task, Wave& wave, bool camera);
@@ -82,7 +84,7 @@ class WaveShader final : public PointShader {
     // light.cpp
     WaveArrays shadow_rays_;
     Buffer<float> shadow_memory_, shadow_far_, arrival_memory_;
-    Buffer<std::uint32_t> shadow_point_;
+    Buffer<std::uint32_t> shadow_point_, lit_;
     LightArrival arrival_{};
     std::vector<SheerHit> sheer_;
     // media.cpp
