@@ -187,5 +187,21 @@ TEST(Furnace, NoMaterialGainsLight) {
                     }
 }
 
+// Of MTL's glass: as much mirrored as enters, if kr and the transmission are taken by themselves.
+TEST(Furnace, NorDoesTheTextbooksGlass) {
+    for (const Engine engine : {Engine::kTrace, Engine::kReferenceTrace})
+        for (const float transmission : {0.5f, 1.0f})
+            for (const float kr : {0.0f, 1.0f}) {
+                Material m = glass(1.5f);
+                m.model = ShadingModel::kBlinnPhong;
+                m.ambient = m.diffuse = {0, 0, 0};
+                m.transmission = transmission;
+                m.mirror = {kr, kr, kr};
+                RenderOptions o = furnace(engine);
+                o.max_depth = 16;
+                EXPECT_LE(in_furnace(m, o).most, 1.001f) << name(engine) << ", " << transmission << ", " << kr;
+            }
+}
+
 }  // namespace
 }  // namespace tessera
