@@ -30,6 +30,9 @@ struct SheerHit {
     float t;
 };
 
+// In an order of their own, by lane, instance and triangle, each once: hierarchies may name a surface more than once.
+void sort_by_triangle(std::vector<SheerHit>& hits);
+
 struct BuildStatistics {
     std::uint32_t groups = 0, built = 0, refitted = 0, duplicates = 0;  // hierarchies: all, made and refitted this time
     std::uint64_t bytes = 0;                                            // that Embree holds

@@ -229,6 +229,17 @@ class LeaveOut {
 
 }  // namespace
 
+void sort_by_triangle(std::vector<SheerHit>& hits) {
+    std::sort(hits.begin(), hits.end(), [](const SheerHit& a, const SheerHit& b) {
+        if (a.lane != b.lane) return a.lane < b.lane;
+        return a.instance != b.instance ? a.instance < b.instance : a.triangle < b.triangle;
+    });
+    const auto end = std::unique(hits.begin(), hits.end(), [](const SheerHit& a, const SheerHit& b) {
+        return a.lane == b.lane && a.instance == b.instance && a.triangle == b.triangle;
+    });
+    hits.erase(end, hits.end());
+}
+
 // A hit's normal along its ray, in the space of the hierarchy, where Embree leaves normals.
 template <int W>
 static float normal_along_ray(const Impl& impl, const RayPacket<W>& r, int i) {

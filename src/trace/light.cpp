@@ -66,16 +66,9 @@ void WaveShader::attenuate(RayPacket<kPacketWidth>& packet, const int* valid, st
         scene_->scene->find_sheer(free, packet, sheer_);
         std::fill_n(packet.mask, kPacketWidth, kMeetsSolid);
     }
-    // In an order of their own: products of many factors depend on it. Each once.
-    std::sort(sheer_.begin(), sheer_.end(), [](const SheerHit& a, const SheerHit& b) {
-        if (a.lane != b.lane) return a.lane < b.lane;
-        return a.instance != b.instance ? a.instance < b.instance : a.triangle < b.triangle;
-    });
-    for (std::size_t i = 0; i < sheer_.size(); ++i) {
-        const SheerHit& hit = sheer_[i];
-        if (i > 0 && hit.lane == sheer_[i - 1].lane && hit.instance == sheer_[i - 1].instance &&
-            hit.triangle == sheer_[i - 1].triangle)
-            continue;
+    // Products of many factors depend on their order.
+    sort_by_triangle(sheer_);
+    for (const SheerHit& hit : sheer_) {
         if (const auto& even = scene_->even_transmittance[hit.instance]) {
             left[hit.lane][0] *= even->x, left[hit.lane][1] *= even->y, left[hit.lane][2] *= even->z;
             continue;

@@ -134,36 +134,29 @@ void TraceVisibility::see_square(int x, int y, SamplePosition offset, VisibleTil
 
 // Cut-outs and transparent surfaces: which of them are there, and before or behind what, by their depth in the picture.
 void TraceVisibility::see_sheer(int x, int y, SamplePosition offset, VisibleTile& tile) {
-    // Each once: hierarchies may name a surface more than once.
-    std::sort(sheer_.begin(), sheer_.end(), [](const SheerHit& a, const SheerHit& b) {
-        if (a.lane != b.lane) return a.lane < b.lane;
-        return a.instance != b.instance ? a.instance < b.instance : a.triangle < b.triangle;
-    });
-    const auto end = std::unique(sheer_.begin(), sheer_.end(), [](const SheerHit& a, const SheerHit& b) {
-        return a.lane == b.lane && a.instance == b.instance && a.triangle == b.triangle;
-    });
-    for (auto hit = sheer_.begin(); hit != end; ++hit) {
-        const int px = x + static_cast<int>(hit->lane) % kSquare, py = y + static_cast<int>(hit->lane) / kSquare;
+    sort_by_triangle(sheer_);
+    for (const SheerHit& hit : sheer_) {
+        const int px = x + static_cast<int>(hit.lane) % kSquare, py = y + static_cast<int>(hit.lane) / kSquare;
         const std::uint32_t pixel = place(px, py);
         const SamplePosition at{256 * (area_.x0 + px) + offset.x, 256 * (area_.y0 + py) + offset.y};
-        if (!sheer_surface_->select(hit->instance, hit->triangle)) continue;
+        if (!sheer_surface_->select(hit.instance, hit.triangle)) continue;
         const float depth = sheer_surface_->depth(at);
         if (!(depth > 0.0f)) continue;
-        const MaterialView& material = sheer_surface_->material(hit->instance);
+        const MaterialView& material = sheer_surface_->material(hit.instance);
         if (material.alpha_mode == AlphaMode::kBlend) {
-            tile.add_fragment({pixel, ordinal_of(hit->instance, hit->triangle, tile), depth}, source_->max_fragments);
+            tile.add_fragment({pixel, ordinal_of(hit.instance, hit.triangle, tile), depth}, source_->max_fragments);
             continue;
         }
         if (const std::uint32_t before = tile.ordinal[pixel]; before != 0) {
             const TileTriangle& opaque = tile.triangles[before - 1];
             surface_->select(opaque.instance, opaque.triangle);
             const float nearest = surface_->depth(at);
-            if (depth < nearest || (depth == nearest && number(opaque) < number({hit->triangle, hit->instance})))
+            if (depth < nearest || (depth == nearest && number(opaque) < number({hit.triangle, hit.instance})))
                 continue;
         }
         if (sheer_surface_->alpha(at) < material.alpha_cutoff) continue;
         if (tile.ordinal[pixel] == 0) ++hits;
-        tile.ordinal[pixel] = ordinal_of(hit->instance, hit->triangle, tile);
+        tile.ordinal[pixel] = ordinal_of(hit.instance, hit.triangle, tile);
     }
 }
 
