@@ -7,6 +7,7 @@
 
 #include <tessera/export.h>
 #include <tessera/material.h>
+#include <tessera/shape.h>
 #include <tessera/types.h>
 
 #include <array>
@@ -62,6 +63,7 @@ struct Primitive {
     std::vector<MorphTarget> targets;
     std::vector<std::uint32_t> indices;     // empty: 0, 1, 2, ...
     std::vector<VariantMaterial> variants;  // where they differ from `material`; kNone as variant: the default
+    std::optional<Shape> shape;             // what the triangles stand for
     std::string extras;
 };
 
