@@ -41,13 +41,26 @@ struct MeshView {
     const std::uint32_t* elements = nullptr;
     std::uint32_t triangles_per_element = 1;
     const std::uint8_t* ties = nullptr;
+    bool whole = false;  // all triangles are one primitive: the tessellation of a shape
 
     TESSERA_INLINE bool is_stroke() const { return elements != nullptr; }
     TESSERA_INLINE std::uint8_t tie_rule(std::uint32_t triangle) const { return ties ? ties[triangle >> 1] : kTopLeft; }
     // The number of a triangle's point, line or triangle in the primitive.
     TESSERA_INLINE std::uint32_t element_of(std::uint32_t triangle) const {
+        if (whole) return 0;
         return elements ? elements[triangle / triangles_per_element] : triangle;
     }
+};
+
+// A shape that is drawn by its formula (shape_surface.h) in place of its triangles: around the object's origin. What is
+// seen of it has the names of its first triangles: of a sphere 0 where a ray enters it and 1 where it leaves.
+struct ShapeView {
+    enum class Kind : std::uint8_t { kTriangles, kSphere, kDisc };  // a disc: in the XZ plane, front +Y
+    Kind kind = Kind::kTriangles;
+    float radius = 0;
+    float camera_to_object[12] = {};  // 3x4 rows
+
+    explicit operator bool() const { return kind != Kind::kTriangles; }
 };
 
 // A mesh placed in the frame. Its triangles have the numbers first_triangle .. + triangle_count - 1,
@@ -64,6 +77,7 @@ struct InstanceView {
     std::uint32_t scene_material;   // index into Scene::materials; their number for the default one
     std::uint32_t node;             // index into Scene::nodes
     std::uint32_t first_primitive;  // as first_triangle, of what labels count: points, lines and triangles, seen or not
+    ShapeView shape{};
 };
 
 // The picture's projection: camera space to clip space, and pixels.

@@ -56,6 +56,16 @@ InstanceView instance_at(const PreparedNode& node, const glm::dmat4& node_to_cam
     return instance;
 }
 
+// Of a sphere or disc: its formula, unless rays would lose their precision in its space.
+void draw_exactly(const Shape& shape, InstanceView& instance) {
+    if (shape.type == Shape::Type::kPlane) return;  // its triangles are as exact
+    if (!invert_rows(instance.object_to_camera, instance.shape.camera_to_object)) return;
+    const bool sphere = shape.type == Shape::Type::kSphere;
+    instance.shape.kind = sphere ? ShapeView::Kind::kSphere : ShapeView::Kind::kDisc;
+    instance.shape.radius = shape.radius;
+    instance.mesh.triangle_count = sphere ? 2 : 1;
+}
+
 constexpr std::uint64_t kMostTriangles = 0xfffffffeu;
 
 [[noreturn]] void refuse_triangles() { throw Error(ErrorCode::kLimit, "the scene has more than 4294967294 triangles"); }
@@ -140,6 +150,7 @@ void make_frame(PreparedScene& scene, const View& view, int width, int height, c
     frame.node_to_clip.clear();
     frame.world_to_camera = camera.world_to_camera;
     frame.points = frame.lines = 0;
+    frame.has_exact_shapes = false;
     const std::size_t lit = lit_materials(scene.scene());
     std::vector<StrokeTask> tasks;
     for (std::size_t n = 0; n < scene.nodes().size(); ++n) {
@@ -166,6 +177,9 @@ void make_frame(PreparedScene& scene, const View& view, int width, int height, c
             instance.scene_material = static_cast<std::uint32_t>(
                 placement.material == ink_material(scene.scene()) ? lit - 1 : placement.material % lit);
             const Primitive& primitive = placement.mesh->primitive();
+            instance.shape = {};
+            if (frame.exact_shapes && primitive.shape) draw_exactly(*primitive.shape, instance);
+            frame.has_exact_shapes = frame.has_exact_shapes || instance.shape;
             const std::uint64_t elements = element_count(primitive);
             std::size_t copies = 1;  // of strokes one for each task, which are filled below
             if (!has_triangles(primitive.mode)) {

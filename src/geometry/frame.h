@@ -31,6 +31,10 @@ struct Frame {
     std::vector<std::string> warnings;
     std::shared_ptr<PreparedScene> owned;  // of a frame that was made from a scene alone
 
+    // Spheres and discs are drawn by their formula, where their place lets them be.
+    bool exact_shapes = false;
+    bool has_exact_shapes = false;  // there are some
+
     // For motion: per instance the place of its node in PreparedScene::nodes(), and by that place the matrices to clip
     // space. Made where they are asked for.
     bool keep_nodes = false;

@@ -182,4 +182,37 @@ glm::dmat4 orthographic_matrix(double left, double right, double bottom, double 
                       1);
 }
 
+double determinant_of_rows(const float* m) {
+    const double a = m[0], b = m[1], c = m[2], d = m[4], e = m[5], f = m[6], g = m[8], h = m[9], i = m[10];
+    return a * (e * i - f * h) - b * (d * i - f * g) + c * (d * h - e * g);
+}
+
+bool invert_rows(const float* m, float* out) {
+    const auto squared = [&](int c) {
+        const double x = m[c], y = m[4 + c], z = m[8 + c];
+        return x * x + y * y + z * z;
+    };
+    const double det = determinant_of_rows(m), size = std::abs(det);
+    constexpr double kLeastVolume = 1e-3, kMostScale = 1e12;
+    if (!(size > 1e-30 && size < 1e30 && size > kLeastVolume * std::sqrt(squared(0) * squared(1) * squared(2))))
+        return false;
+    const auto at = [&](int r, int c) { return static_cast<double>(m[4 * (r % 3) + c % 3]); };
+    double inverse[3][3];
+    for (int r = 0; r < 3; ++r) {
+        for (int c = 0; c < 3; ++c)
+            inverse[r][c] = (at(c + 1, r + 1) * at(c + 2, r + 2) - at(c + 1, r + 2) * at(c + 2, r + 1)) / det;
+    }
+    for (int r = 0; r < 3; ++r) {
+        double offset = 0;
+        for (int c = 0; c < 3; ++c) {
+            if (!(std::abs(inverse[r][c]) < kMostScale)) return false;
+            out[4 * r + c] = static_cast<float>(inverse[r][c]);
+            offset -= inverse[r][c] * m[4 * c + 3];
+        }
+        out[4 * r + 3] = static_cast<float>(offset);
+        if (!std::isfinite(out[4 * r + 3])) return false;
+    }
+    return true;
+}
+
 }  // namespace tessera

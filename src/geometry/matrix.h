@@ -47,6 +47,11 @@ glm::dmat3 normal_matrix(const glm::dmat4& m);
 // -1 when the linear part mirrors (triangles change their winding), 0 when it flattens, else 1.
 int determinant_sign(const glm::dmat4& m);
 
+// Of 3x4 rows of float: the determinant of the linear part, and the inverse, rounded at the end. False where rays would
+// lose their precision in object space: flattened objects, axes within a thousandth of one plane, and extreme scales.
+double determinant_of_rows(const float* m);
+bool invert_rows(const float* m, float* out);
+
 // Whether the matrix is a rotation and a translation, up to what the rounding of floats may amount to.
 bool is_rigid(const glm::dmat4& m);
 

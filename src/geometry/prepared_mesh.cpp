@@ -57,6 +57,7 @@ MeshView view_of(const PreparedMesh& mesh) {
     v.triangles = mesh.triangles.indices().data();
     v.triangle_count = static_cast<std::uint32_t>(mesh.triangles.count());
     v.vertex_count = static_cast<std::uint32_t>(p.positions.size());
+    v.whole = p.shape.has_value();
     return v;
 }
 

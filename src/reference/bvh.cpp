@@ -1,9 +1,12 @@
 #include "reference/bvh.h"
 
+#include "shading/shape_surface.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace tessera {
 namespace {
@@ -14,10 +17,25 @@ constexpr int kDeepest = 40;
 double component(const Vec3d& v, int axis) { return axis == 0 ? v.x : (axis == 1 ? v.y : v.z); }
 
 // The camera-space position as the surface function has it, carried on in double.
-Vec3d to_camera(const float* rows, const float* p) {
-    const double x = p[0], y = p[1], z = p[2];
+Vec3d to_camera(const float* rows, const Vec3d& p) {
+    const double x = p.x, y = p.y, z = p.z;
     return {rows[0] * x + rows[1] * y + rows[2] * z + rows[3], rows[4] * x + rows[5] * y + rows[6] * z + rows[7],
             rows[8] * x + rows[9] * y + rows[10] * z + rows[11]};
+}
+Vec3d to_camera(const float* rows, const float* p) {
+    return to_camera(rows, Vec3d{static_cast<double>(p[0]), static_cast<double>(p[1]), static_cast<double>(p[2])});
+}
+
+// The box around an instance's shape in camera space.
+std::pair<Vec3d, Vec3d> shape_box(const InstanceView& instance) {
+    const float* m = instance.object_to_camera;
+    const auto reach = [&](int row) {
+        const double x = m[4 * row], y = instance.shape.kind == ShapeView::Kind::kDisc ? 0.0f : m[4 * row + 1],
+                     z = m[4 * row + 2];
+        return instance.shape.radius * std::sqrt(x * x + y * y + z * z) * (1 + 1e-9);
+    };
+    const Vec3d centre = to_camera(m, Vec3d{0, 0, 0}), half{reach(0), reach(1), reach(2)};
+    return {centre - half, centre + half};
 }
 
 }  // namespace
@@ -34,12 +52,43 @@ std::optional<RayHit> intersect(const CastRay& ray, const Vec3d& v0, const Vec3d
     return RayHit{0, t, {b0, b1, b2}};
 }
 
+std::optional<RayHit> intersect_shape(const CastRay& ray, const InstanceView& instance, bool leaving) {
+    const ShapeView& shape = instance.shape;
+    const float* m = shape.camera_to_object;
+    const Vec3d o = to_camera(m, ray.origin), d = to_camera(m, ray.origin + ray.direction) - o;
+    const double r = shape.radius;
+    double t = 0;
+    if (shape.kind == ShapeView::Kind::kDisc) {
+        t = -o.y / d.y;
+        const double x = o.x + d.x * t, z = o.z + d.z * t;
+        if (d.y == 0 || !(x * x + z * z <= r * r)) return std::nullopt;
+    } else {
+        const double a = dot(d, d), nearest = -dot(o, d) / a;
+        const Vec3d p = o + d * nearest;
+        const double rest = r * r - dot(p, p);
+        if (!(rest >= 0)) return std::nullopt;
+        t = nearest + (leaving ? std::sqrt(rest / a) : -std::sqrt(rest / a));
+    }
+    if (!(t >= 0)) return std::nullopt;
+    return RayHit{0, t, {1, 0, 0}};
+}
+
 Bvh::Bvh(const Frame& frame, bool brute_force) {
     vertices_.reserve(3 * std::size_t{frame.triangle_count});
-    for (const InstanceView& instance : frame.instances)
+    if (frame.has_exact_shapes) shape_of_.resize(frame.triangle_count, nullptr);
+    for (const InstanceView& instance : frame.instances) {
+        if (instance.shape) {
+            const auto [low, high] = shape_box(instance);
+            for (std::uint32_t i = 0; i < instance.mesh.triangle_count; ++i) {
+                shape_of_[vertices_.size() / 3] = &instance;
+                vertices_.insert(vertices_.end(), {low, high, (low + high) * 0.5});
+            }
+            continue;
+        }
         for (std::size_t i = 0; i < 3 * std::size_t{instance.mesh.triangle_count}; ++i)
             vertices_.push_back(to_camera(instance.object_to_camera,
                                           instance.mesh.positions + 3 * std::size_t{instance.mesh.triangles[i]}));
+    }
     order_.resize(vertices_.size() / 3);
     for (std::uint32_t i = 0; i < order_.size(); ++i) order_[i] = i;
     if (order_.empty()) return;
@@ -152,6 +201,15 @@ void Bvh::build() {
     }
 }
 
+std::optional<RayHit> Bvh::intersect_number(const CastRay& ray, std::uint32_t number) const {
+    if (!shape_of_.empty() && shape_of_[number]) {
+        const InstanceView& instance = *shape_of_[number];
+        return intersect_shape(ray, instance, number - instance.first_triangle == kLeavingSphere);
+    }
+    const std::size_t v = 3 * std::size_t{number};
+    return intersect(ray, vertices_[v], vertices_[v + 1], vertices_[v + 2]);
+}
+
 void Bvh::traverse(const CastRay& ray, double t_min, double t_max,
                    const std::function<double(const RayHit&, double)>& visit) const {
     if (nodes_.empty()) return;
@@ -186,8 +244,7 @@ void Bvh::traverse(const CastRay& ray, double t_min, double t_max,
             continue;
         }
         for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
-            const std::size_t v = 3 * std::size_t{order_[i]};
-            std::optional<RayHit> hit = intersect(ray, vertices_[v], vertices_[v + 1], vertices_[v + 2]);
+            std::optional<RayHit> hit = intersect_number(ray, order_[i]);
             if (!hit || hit->t < t_min || hit->t > t_max) continue;
             hit->triangle = order_[i];
             t_max = visit(*hit, t_max);

@@ -1,4 +1,4 @@
-// A plain bounding volume hierarchy over the triangles of a frame in camera space, double precision:
+// A plain bounding volume hierarchy over the triangles and exact shapes of a frame in camera space, double precision:
 // split by the surface area heuristic, leaves of a few triangles. And the intersection test that both
 // it and brute force use.
 #pragma once
@@ -32,6 +32,9 @@ struct RayHit {
 // intersection via automated search"). Empty for a miss, behind the origin, degenerate or edge-on.
 std::optional<RayHit> intersect(const CastRay& ray, const Vec3d& v0, const Vec3d& v1, const Vec3d& v2);
 
+// The same for an instance's shape (ShapeView): of a sphere where the ray enters, or where it leaves.
+std::optional<RayHit> intersect_shape(const CastRay& ray, const InstanceView& instance, bool leaving);
+
 class Bvh {
   public:
     // `brute_force` keeps one leaf of everything: O(rays * triangles), for comparison.
@@ -60,7 +63,10 @@ class Bvh {
     std::uint32_t partition(const Node& node, int depth);
     void build();
 
-    std::vector<Vec3d> vertices_;  // three per triangle, by number
+    std::optional<RayHit> intersect_number(const CastRay& ray, std::uint32_t number) const;
+
+    std::vector<Vec3d> vertices_;                // three per triangle, by number; of shapes the ends of their boxes
+    std::vector<const InstanceView*> shape_of_;  // by number: of those that are none null; empty where there are none
     std::vector<std::uint32_t> order_;
     std::vector<Node> nodes_;
 };

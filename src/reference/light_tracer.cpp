@@ -1,5 +1,7 @@
 #include "reference/light_tracer.h"
 
+#include "shading/shape_surface.h"
+
 #include <algorithm>
 #include <limits>
 
@@ -31,17 +33,13 @@ float largest(const Vec3T<float>& v) { return std::max(std::max(v.x, v.y), v.z);
 LightTracerReference::LightTracerReference(const Frame& frame, const Bvh& bvh, const ShadingContext& context,
                                            const ReferenceTransport& settings)
     : frame_(frame), bvh_(bvh), context_(context), settings_(settings) {
-    const ProjectionView& picture = frame.projection;
-    spread_ = picture.orthographic ? 0.0f : 2.0f / (picture.height * picture.scale_y);
+    spread_ = picture_spread(frame.projection);
     for (std::size_t i = 0; i < frame.instances.size(); ++i)
         sizes_.push_back(largest_coordinate(frame.instances[i], frame.prepared[i]->bounds));
 }
 
-// The first point: the rasterizer's, moved onto the triangle's own plane.
-ShadedPoint<float> LightTracerReference::shade(std::uint32_t triangle, SamplePosition at, SurfaceSampler& sampler) {
-    Point point{sampler.point(triangle, at), triangle, 0, 0, 1};
-    SurfacePoint<float>& s = point.surface;
-    const InstanceView& instance = frame_.instance_of(triangle);
+// The rasterizer's point moved onto the triangle's own plane.
+static void move_onto_triangle(const InstanceView& instance, std::uint32_t triangle, SurfacePoint<float>& s) {
     const std::uint32_t* corners = instance.mesh.triangles + 3 * std::size_t{triangle - instance.first_triangle};
     Vec3T<float> p[3];
     for (std::size_t i = 0; i < 3; ++i)
@@ -49,8 +47,16 @@ ShadedPoint<float> LightTracerReference::shade(std::uint32_t triangle, SamplePos
     const Vec3T<float> normal = geometric_normal(instance, p[0], p[1], p[2]);
     s.position = onto_plane(s.position, normal, dot(normal, transform_point(instance.object_to_camera, p[0])));
     turn_to_viewer(s, normal);
+}
+
+// The first point, of the picture.
+ShadedPoint<float> LightTracerReference::shade(std::uint32_t triangle, SamplePosition at, SurfaceSampler& sampler) {
+    Point point{sampler.point(triangle, at), triangle, 0, 0, 1};
+    SurfacePoint<float>& s = point.surface;
+    const InstanceView& instance = frame_.instance_of(triangle);
+    if (!instance.shape) move_onto_triangle(instance, triangle, s);
     const ProjectionView& picture = frame_.projection;
-    const float pixel = 2.0f / (picture.height * picture.scale_y);
+    const float pixel = pixel_width(picture);
     point.footprint = picture.orthographic ? pixel - s.position.z * 0.0f : 0.0f - s.position.z * pixel;
     point.size = coordinate_size(s.position, sizes_[static_cast<std::size_t>(&instance - frame_.instances.data())]);
     float alpha = 1;
@@ -170,11 +176,17 @@ TracedLight LightTracerReference::miss(const Ray& ray) const {
 
 RaySurface<float> LightTracerReference::surface_at(std::uint32_t triangle, const ConeRay<float>& ray, float spread) {
     const InstanceView& instance = frame_.instance_of(triangle);
-    const std::uint32_t* vertices = instance.mesh.triangles + 3 * std::size_t{triangle - instance.first_triangle};
-    const Corner<float> corners[3] = {fetch_corner(instance.mesh, vertices[0]),
-                                      fetch_corner(instance.mesh, vertices[1]),
-                                      fetch_corner(instance.mesh, vertices[2])};
-    RaySurface<float> hit = ray_surface(instance, corners, ray, spread, context_.footprint_scale);
+    RaySurface<float> hit;
+    if (instance.shape) {
+        hit = shape_surface<float>(instance, ray, triangle - instance.first_triangle == kLeavingSphere, spread,
+                                   context_.footprint_scale);
+    } else {
+        const std::uint32_t* vertices = instance.mesh.triangles + 3 * std::size_t{triangle - instance.first_triangle};
+        const Corner<float> corners[3] = {fetch_corner(instance.mesh, vertices[0]),
+                                          fetch_corner(instance.mesh, vertices[1]),
+                                          fetch_corner(instance.mesh, vertices[2])};
+        hit = ray_surface(instance, corners, ray, spread, context_.footprint_scale);
+    }
     const MaterialView& material = context_.materials[instance.material];
     if (surface_layout(instance.mesh, material, frame_.projection.orthographic).tangent >= 0)
         hit.point.normal = shading_normal(material, hit.point);
@@ -193,7 +205,9 @@ bool LightTracerReference::nearest(const Ray& ray, Hit& hit) {
         if (instance.mesh.is_stroke()) return t_max;
         if (found && candidate.t == hit.t && candidate.triangle > hit.triangle) return t_max;
         const bool inside_counts = may_transmit(material) && !material.thin;
-        if (!material.double_sided && !inside_counts) {
+        if (instance.shape && !material.double_sided && !inside_counts) {
+            if (surface_at(candidate.triangle, ray.cone, spread_).point.side < 0.0f) return t_max;
+        } else if (!material.double_sided && !inside_counts) {
             const std::uint32_t* v =
                 instance.mesh.triangles + 3 * std::size_t{candidate.triangle - instance.first_triangle};
             const auto at = [&](std::size_t i) {

@@ -37,11 +37,11 @@ Visibility cast_rays(const Frame& frame, const Bvh& bvh, const ShadingContext& c
             float& nearest = out.depth[pixel];
             std::uint32_t& triangle = out.triangle[pixel];
             const auto visit = [&](const RayHit& hit, double t_max) {
-                const TriangleSetup& t = sampler.setup(hit.triangle);
                 const MaterialView& material = sampler.material(hit.triangle);
-                if (!t.visible() || (!t.front(sampler.instance(hit.triangle)) && !material.double_sided)) return t_max;
+                if (!sampler.visible(hit.triangle) || !(material.double_sided || sampler.front(hit.triangle, at)))
+                    return t_max;
                 // Which one is in front is decided by the canonical depth, as everywhere.
-                const float z = t.depth.at(at.x, at.y);
+                const float z = sampler.depth(hit.triangle, at);
                 if (!(z > 0.0f) || z < nearest) return t_max;
                 if (z == nearest && triangle != 0 && triangle <= hit.triangle + 1) return t_max;
                 if (material.alpha_mode == AlphaMode::kBlend) {

@@ -1,10 +1,13 @@
 #include "reference/surface_sampler.h"
 
+#include "shading/shape_surface.h"
+
 namespace tessera {
+
 void SurfaceSampler::select(std::uint32_t triangle) {
     if (triangle == selected_) return;
     instance_ = &frame_.instance_of(triangle);
-    setup_triangle(*instance_, triangle - instance_->first_triangle, frame_.projection, setup_);
+    if (!instance_->shape) setup_triangle(*instance_, triangle - instance_->first_triangle, frame_.projection, setup_);
     selected_ = triangle;
 }
 
@@ -20,7 +23,22 @@ const InstanceView& SurfaceSampler::instance(std::uint32_t triangle) {
 
 float SurfaceSampler::depth(std::uint32_t triangle, SamplePosition at) {
     select(triangle);
+    if (instance_->shape) return depth_of(frame_.projection, shape_point(triangle, at, 1.0f).position);
     return setup_.depth.at(at.x, at.y);
+}
+
+bool SurfaceSampler::front(std::uint32_t triangle, SamplePosition at) {
+    select(triangle);
+    return instance_->shape ? shape_point(triangle, at, 1.0f).side > 0.0f : setup_.front(*instance_);
+}
+
+// What the camera sees of a shape.
+SurfacePoint<float> SurfaceSampler::shape_point(std::uint32_t triangle, SamplePosition at, float footprint_scale) {
+    const ConeRay<float> ray =
+        picture_ray(frame_.projection, rays_, static_cast<float>(at.x), static_cast<float>(at.y));
+    return shape_surface<float>(*instance_, ray, triangle - instance_->first_triangle == kLeavingSphere,
+                                picture_spread(frame_.projection), footprint_scale)
+        .point;
 }
 
 void SurfaceSampler::fetch_planes(std::uint32_t triangle) {
@@ -30,10 +48,11 @@ void SurfaceSampler::fetch_planes(std::uint32_t triangle) {
     const bool orthographic = frame_.projection.orthographic;
     layout_ = labels_ ? label_layout(instance_->mesh, material(triangle), *labels_, orthographic)
                       : surface_layout(instance_->mesh, material(triangle), orthographic);
+    planes_of_ = triangle;
+    if (instance_->shape) return;
     make_surface_record(*instance_, index, setup_, frame_.projection, layout_, record_);
     const Corner<float> c[3] = {corner(index, 0), corner(index, 1), corner(index, 2)};
     geometric_normal_ = geometric_normal(*instance_, c[0].position, c[1].position, c[2].position);
-    planes_of_ = triangle;
 }
 
 Corner<float> SurfaceSampler::corner(std::uint32_t index, int i) const {
@@ -43,6 +62,7 @@ Corner<float> SurfaceSampler::corner(std::uint32_t index, int i) const {
 
 SurfacePoint<float> SurfaceSampler::sample(std::uint32_t triangle, SamplePosition at, float footprint_scale) {
     fetch_planes(triangle);
+    if (instance_->shape) return shape_point(triangle, at, footprint_scale);
     const float x = static_cast<float>(at.x), y = static_cast<float>(at.y);
     SurfaceSample<float> sample;
     sample_planes(
@@ -59,7 +79,7 @@ LabelPoint<float> SurfaceSampler::label(std::uint32_t triangle, SamplePosition a
 
 SurfacePoint<float> SurfaceSampler::point(std::uint32_t triangle, SamplePosition at) {
     SurfacePoint<float> s = sample(triangle, at, context_.footprint_scale);
-    s.geometric_normal = geometric_normal_ * s.side;
+    if (!instance_->shape) s.geometric_normal = geometric_normal_ * s.side;
     if (layout_.tangent >= 0) s.normal = shading_normal(material(triangle), s);
     return s;
 }

@@ -28,6 +28,9 @@ class SurfaceSampler {
     LabelPoint<float> label(std::uint32_t triangle, SamplePosition at, const float* label_from_camera);
     // Canonical depth (reversed) of the triangle at a position.
     float depth(std::uint32_t triangle, SamplePosition at);
+    // Whether the camera sees the triangle at all, and its front there.
+    bool visible(std::uint32_t triangle) { return instance(triangle).shape || setup(triangle).visible(); }
+    bool front(std::uint32_t triangle, SamplePosition at);
     // Distance along the view axis there, from the canonical depth.
     float distance(std::uint32_t triangle, SamplePosition at) {
         return distance_of_depth(frame_.projection, depth(triangle, at));
@@ -51,6 +54,7 @@ class SurfaceSampler {
   private:
     void select(std::uint32_t triangle);
     void fetch_planes(std::uint32_t triangle);
+    SurfacePoint<float> shape_point(std::uint32_t triangle, SamplePosition at, float footprint_scale);
     SurfacePoint<float> sample(std::uint32_t triangle, SamplePosition at, float footprint_scale);
     Corner<float> corner(std::uint32_t index, int i) const;
 

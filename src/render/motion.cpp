@@ -1,5 +1,6 @@
 #include "render/motion.h"
 
+#include "shading/shape_surface.h"
 #include "shading/triangle_setup.h"
 
 #include <algorithm>
@@ -163,6 +164,7 @@ class RowMotion {
     bool measure(std::uint32_t triangle, int x, int y, float* vector) {
         find(triangle);
         if (stroke_) return measure_stroke(x + 0.5, y + 0.5, vector);
+        if (shape_) return measure_shape(x, y, vector);
         if (stands_) return sees({256 * x + 128, 256 * y + 128});
         const double px = x + 0.5, py = y + 0.5;
         const double w = static_cast<double>(now_.projection.width), h = static_cast<double>(now_.projection.height);
@@ -185,6 +187,26 @@ class RowMotion {
     }
 
   private:
+    // The point of the formula, which moves with its node; the other shot shows the shape's triangles.
+    bool measure_shape(int x, int y, float* vector) {
+        const PictureRays rays(now_.projection);
+        const float at_x = static_cast<float>(256 * x + 128), at_y = static_cast<float>(256 * y + 128);
+        const Vec3T<float> p =
+            hit_shape<float>(shape_->shape, picture_ray(now_.projection, rays, at_x, at_y), local_ == kLeavingSphere)
+                .position;
+        const float position[3] = {p.x, p.y, p.z};
+        const glm::dvec4 to = clip_position(other_.frame.node_to_clip[node_], position);
+        const double w = static_cast<double>(now_.projection.width), h = static_cast<double>(now_.projection.height);
+        const double qx = stands_ ? x + 0.5 : (to.x / to.w + 1) * 0.5 * w,
+                     qy = stands_ ? y + 0.5 : (1 - to.y / to.w) * 0.5 * h;
+        if (!(to.w > 0) || !(std::fabs(qx) < 1e7 && std::fabs(qy) < 1e7)) return false;
+        vector[0] = static_cast<float>(qx - (x + 0.5)), vector[1] = static_cast<float>(qy - (y + 0.5));
+        const bool inside = qx >= 0 && qx < w && qy >= 0 && qy < h && to.z <= to.w && to.z >= 0;
+        return inside &&
+               triangles_.sees_point(primitive_, static_cast<float>(to.z / to.w),
+                                     {static_cast<std::int32_t>(qx * 256), static_cast<std::int32_t>(qy * 256)});
+    }
+
     // Points move as their centres do, and what lines show as the points of the line beside it along the minor axis.
     bool measure_stroke(double px, double py, float* vector) {
         const double w = static_cast<double>(now_.projection.width), h = static_cast<double>(now_.projection.height);
@@ -223,9 +245,10 @@ class RowMotion {
         there_instance_ = moved_.instance[i];
         stands_ = moved_.stands[i] != 0;
         stroke_ = instance.mesh.is_stroke();
+        shape_ = instance.shape ? &instance : nullptr;
         primitive_ = instance.first_primitive + instance.mesh.element_of(local_);
-        if (stands_ && !stroke_) return;
-        const std::uint32_t node = now_.node_of_instance[i];
+        const std::uint32_t node = node_ = now_.node_of_instance[i];
+        if (shape_ || (stands_ && !stroke_)) return;
         const PreparedMesh& mesh = prepared_mesh(*now_.prepared[i]);
         const float* const positions = other_.positions_of(mesh);
         std::array<std::uint32_t, 2> ends{};
@@ -241,7 +264,8 @@ class RowMotion {
     const OtherShot& other_;
     const Moved& moved_;
     OtherTriangles triangles_;
-    std::uint32_t triangle_ = 0xffffffffu, local_ = 0, there_instance_ = kNoInstance, primitive_ = 0;
+    std::uint32_t triangle_ = 0xffffffffu, local_ = 0, there_instance_ = kNoInstance, primitive_ = 0, node_ = 0;
+    const InstanceView* shape_ = nullptr;  // drawn by its formula
     bool stands_ = false, stroke_ = false;
     glm::dvec4 here_[3], there_[3];
 };

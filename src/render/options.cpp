@@ -150,8 +150,9 @@ TransportSettings transport_settings(const RenderOptions& options, const FilmVie
     return settings;
 }
 
-std::optional<ReferenceTransport> reference_transport(const RenderOptions& options, const FilmView& film) {
-    if (!traces_shadows(options) && !traces_bounces(options)) return std::nullopt;
+std::optional<ReferenceTransport> reference_transport(const RenderOptions& options, const FilmView& film,
+                                                      const Frame& frame) {
+    if (!traces_shadows(options) && !traces_bounces(options) && !frame.has_exact_shapes) return std::nullopt;
     const TransportSettings s = transport_settings(options, film);
     ReferenceTransport t{s.shadows, s.bounces, s.max_depth, s.least, {}};
     std::copy_n(s.background, 3, t.background);

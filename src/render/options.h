@@ -34,7 +34,8 @@ bool traces_shadows(const RenderOptions& options);
 bool traces_bounces(const RenderOptions& options);
 TransportSettings transport_settings(const RenderOptions& options, const FilmView& film);
 // Nothing where no light is traced.
-std::optional<ReferenceTransport> reference_transport(const RenderOptions& options, const FilmView& film);
+std::optional<ReferenceTransport> reference_transport(const RenderOptions& options, const FilmView& film,
+                                                      const Frame& frame);
 
 // The tile rasterizer's settings for all samples, under `control`.
 RasterSettings raster_settings(const RenderOptions& options, const FilmView& film, const RunControl& control);

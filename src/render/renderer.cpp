@@ -88,6 +88,7 @@ void Renderer::Impl::draw(const Shot& now, const Shot& earlier, const Shot& late
 
     prepared.move_to(now.moment);
     frame.keep_nodes = options.want_motion;
+    frame.exact_shapes = options.engine == Engine::kTrace || options.engine == Engine::kReferenceTrace;
     make_frame(prepared, now.view, options.width, options.height, stroke_style(options), frame);
     if ((options.engine == Engine::kTrace || options.engine == Engine::kReferenceTrace) && !is_square(frame.projection))
         throw Error(ErrorCode::kUsage,
@@ -154,7 +155,8 @@ void Renderer::Impl::draw_tiles(const Watchdog& watchdog, Stopwatch& watch, Rend
     RasterSettings settings = raster_settings(options, shading.film(options), watchdog.control(0, 1));
     result.stats.isa = settings.isa;
     result.stats.threads = arena.threads();
-    const bool traced = traces_shadows(options) || traces_bounces(options);
+    // Tiles know triangles; what is drawn by its formula is shaded by the ray tracer.
+    const bool traced = traces_shadows(options) || traces_bounces(options) || frame.has_exact_shapes;
     if (traced || options.engine == Engine::kTrace) {
         if (!tracer) tracer.emplace(settings.isa, options.max_bytes);
         tracer->begin(frame, shading.context(), transport_settings(options, settings.film), arena);
@@ -199,7 +201,7 @@ void Renderer::Impl::draw_tiles(const Watchdog& watchdog, Stopwatch& watch, Rend
 void Renderer::Impl::draw_reference(const Watchdog& watchdog, Stopwatch& watch, RenderResult& result) {
     const bool tracing = options.engine == Engine::kReferenceTrace;
     ReferenceEngine engine =
-        tracing ? ReferenceEngine(frame, shading.context(), reference_transport(options, shading.film(options)))
+        tracing ? ReferenceEngine(frame, shading.context(), reference_transport(options, shading.film(options), frame))
                 : ReferenceEngine(frame, shading.context());
     const PictureTargets targets = make_targets(result);
     watch.phase("build");

@@ -86,6 +86,13 @@ TESSERA_INLINE Vec3T<F> transmittance(const Vec3T<F>& absorption, F distance) {
             math::exp(-(absorption.z * distance))};
 }
 
+// How wide a pixel is at distance 1 along the view axis, or everywhere without perspective; and what the cone of a
+// camera's ray gains with distance.
+inline float pixel_width(const ProjectionView& picture) { return 2.0f / (picture.height * picture.scale_y); }
+inline float picture_spread(const ProjectionView& picture) {
+    return picture.orthographic ? 0.0f : pixel_width(picture);
+}
+
 // --- hits of rays anywhere ----------------------------------------------------------------------
 
 // A ray in camera space whose footprint is a cone: its width at the origin, and what it gains per unit of length

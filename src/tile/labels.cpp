@@ -1,4 +1,5 @@
 // Labels of a tile, at the pixel centre: of the nearest surface with alpha of at least one half.
+#include "shading/shape_surface.h"
 #include "tile/tile.h"
 
 #include <algorithm>
@@ -27,7 +28,13 @@ void Tile::choose_label_fragments() {
         point_pixel_.push_back(f.pixel);
         point_ordinal_.push_back(f.ordinal);
     }
-    shade_list({128, 128}, nullptr);
+    if (task_->frame.has_exact_shapes && task_->settings.shaders) {
+        std::unique_ptr<PointShader> shader = task_->settings.shaders->take();
+        shade_list({128, 128}, shader.get());
+        task_->settings.shaders->give(std::move(shader));
+    } else {
+        shade_list({128, 128}, nullptr);
+    }
     for (std::size_t i = 0; i < visible_.fragments.size(); ++i) {  // the last one that is solid enough stays
         if (!(point_color_[3][i] >= 0.5f)) continue;
         visible_.ordinal[visible_.fragments[i].pixel] = visible_.fragments[i].ordinal;
@@ -113,6 +120,34 @@ void Tile::label_surfaces() {
             job.ordinal = own;
         }
         task_->kernels.label_surfaces(job);
+    }
+    if (task_->frame.has_exact_shapes) label_shapes();
+}
+
+// Of what is drawn by its formula, in place of what its triangles said.
+void Tile::label_shapes() {
+    const ProjectionView& projection = task_->frame.projection;
+    const LabelPlanes planes = label_planes();
+    const auto store = [](float* plane, std::size_t at, const Vec3T<float>& v) {
+        if (plane) plane[3 * at] = v.x, plane[3 * at + 1] = v.y, plane[3 * at + 2] = v.z;
+    };
+    for (std::uint32_t pixel = 0; pixel < visible_.ordinal.size(); ++pixel) {
+        if (visible_.ordinal[pixel] == 0) continue;
+        const TileTriangle& seen = visible_.triangles[visible_.ordinal[pixel] - 1];
+        const InstanceView& instance = task_->frame.instances[seen.instance];
+        if (!instance.shape) continue;
+        const TilePixel p(pixel, area_.side);
+        const LabelPoint<float> label =
+            shape_label(task_->labels, instance, task_->shading.materials[instance.material], projection,
+                        task_->targets.label_from_camera, seen.triangle == kLeavingSphere, visible_.depth[pixel],
+                        {256 * (area_.x0 + p.x) + 128, 256 * (area_.y0 + p.y) + 128});
+        const std::size_t at =
+            static_cast<std::size_t>(p.y) * static_cast<std::size_t>(projection.width) + static_cast<std::size_t>(p.x);
+        store(planes.normal, at, label.normal);
+        store(planes.shading_normal, at, label.shading_normal);
+        store(planes.position, at, label.position);
+        store(planes.albedo, at, label.albedo);
+        if (planes.uv) planes.uv[2 * at] = label.uv.x, planes.uv[2 * at + 1] = label.uv.y;
     }
 }
 

@@ -24,7 +24,8 @@ void find_batches(const std::vector<InstanceView>& instances, bool by_material, 
         const std::uint32_t kind = by_material ? instances[i].material : 0;
         if (kinds.size() <= kind) kinds.resize(kind + 1);
         const auto found = std::find_if(kinds[kind].begin(), kinds[kind].end(), [&](std::uint32_t other) {
-            return batches.layouts[other] == batches.layouts[i];
+            return batches.layouts[other] == batches.layouts[i] &&
+                   instances[other].shape.kind == instances[i].shape.kind;
         });
         batches.batch_of.push_back(found == kinds[kind].end() ? i : *found);
         if (batches.batch_of[i] == i) kinds[kind].push_back(i);

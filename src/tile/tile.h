@@ -68,6 +68,7 @@ class Tile {
     void write_labels(bool something) const;
     void clear_surface_labels() const;
     void label_surfaces();
+    void label_shapes();
     LabelPlanes label_planes() const;
     void finish_colors();
     void fill_background();

@@ -31,6 +31,7 @@ bool needs_padding(const GroupMember& member) {
 TriangleSet triangle_set(const GroupMember& member, const float* positions) {
     TriangleSet set{positions, member.triangles, member.vertex_count, member.triangle_count};
     const TraceClass& type = member.type;
+    if (member.shape != ShapeView::Kind::kTriangles) set.triangle_count = 0;
     if (type.undecided) return set;  // each of them counts
     // Kinds of rays: from the camera or not, those that meet each kind of instance.
     std::uint8_t kinds = 0;
@@ -51,6 +52,7 @@ std::size_t GroupKeyHash::operator()(const GroupKey& key) const {
         h = mix(h, reinterpret_cast<std::uintptr_t>(m.triangles));
         h = mix(h, std::uint64_t{m.triangle_count} << 32 | m.vertex_count);
         h = mix(h, m.type.mask * 4u + m.type.culled * 2u + m.type.seen_inside);
+        h = mix(h, static_cast<std::uint64_t>(m.shape));
     }
     return static_cast<std::size_t>(h ^ (h >> 32));
 }
@@ -66,7 +68,8 @@ void Group::build(Arena& arena, const float* to_camera) {
     claim_.clear();
     parts_.resize(key_.members.size());
     for (std::size_t m = 0; m < parts_.size(); ++m)
-        if (to_camera || needs_padding(key_.members[m])) copy_positions(key_.members[m], to_camera, parts_[m]);
+        if (key_.members[m].shape == ShapeView::Kind::kTriangles && (to_camera || needs_padding(key_.members[m])))
+            copy_positions(key_.members[m], to_camera, parts_[m]);
     dropped_ = duplicate_triangles(arena);
     duplicates_ = 0;
     for (std::size_t m = 0; m < dropped_.size(); ++m) {
@@ -80,7 +83,10 @@ void Group::build(Arena& arena, const float* to_camera) {
     mask_ = 0;
     for (std::uint32_t m = 0; m < parts_.size(); ++m) {
         mask_ |= key_.members[m].type.mask;
-        attach(m);
+        if (key_.members[m].shape == ShapeView::Kind::kTriangles)
+            attach(m);
+        else
+            attach_shape(m);
     }
     commit(arena);
     if (key_.kind == GroupKind::kDeformed)
@@ -157,8 +163,26 @@ void Group::attach(std::uint32_t m) {
                                shared ? member.triangles : part.triangles.data(), 0, 12, count);
     rtcSetSharedGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, positions(m), 0, 12,
                                member.vertex_count);
-    rtcSetGeometryMask(geometry.get(), member.type.mask);
     if (key_.kind == GroupKind::kDeformed) rtcSetGeometryBuildQuality(geometry.get(), RTC_BUILD_QUALITY_REFIT);
+    add_geometry(geometry, m);
+}
+
+// A sphere or disc of Embree's own, in the origin.
+void Group::attach_shape(std::uint32_t m) {
+    const GroupMember& member = key_.members[m];
+    const bool sphere = member.shape == ShapeView::Kind::kSphere;
+    std::vector<float>& numbers = parts_[m].positions = {0, 0, 0, member.radius, 0, 1, 0, 0};
+    const GeometryHandle geometry =
+        device_.new_geometry(sphere ? RTC_GEOMETRY_TYPE_SPHERE_POINT : RTC_GEOMETRY_TYPE_ORIENTED_DISC_POINT);
+    rtcSetSharedGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4, numbers.data(), 0, 16, 1);
+    if (!sphere)
+        rtcSetSharedGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_NORMAL, 0, RTC_FORMAT_FLOAT3, numbers.data(), 16, 12,
+                                   1);
+    add_geometry(geometry, m);
+}
+
+void Group::add_geometry(const GeometryHandle& geometry, std::uint32_t m) {
+    rtcSetGeometryMask(geometry.get(), key_.members[m].type.mask);
     rtcCommitGeometry(geometry.get());
     rtcAttachGeometryByID(scene_.get(), geometry.get(), m);
     device_.check();

@@ -27,6 +27,8 @@ struct GroupMember {
     const DrawnMesh* mesh;
     std::uint32_t vertex_count, triangle_count;
     TraceClass type;
+    ShapeView::Kind shape = ShapeView::Kind::kTriangles;  // in place of the triangles
+    float radius = 0;
     friend bool operator==(const GroupMember&, const GroupMember&) = default;
 };
 struct GroupKey {
@@ -62,7 +64,7 @@ class Group {
   private:
     // What a member has of its own; empty where it shares the mesh's.
     struct Part {
-        std::vector<float> positions;                 // in camera space, or padded for Embree
+        std::vector<float> positions;                 // in camera space, or padded for Embree; of shapes theirs
         std::vector<std::uint32_t> triangles;         // without duplicates
         std::vector<std::uint32_t> triangle_numbers;  // of those
     };
@@ -71,6 +73,8 @@ class Group {
     std::vector<std::vector<std::uint32_t>> duplicate_triangles(Arena& arena) const;
     void leave_out(const GroupMember& member, const std::vector<std::uint32_t>& dropped, Part& part);
     void attach(std::uint32_t member);
+    void attach_shape(std::uint32_t member);
+    void add_geometry(const GeometryHandle& geometry, std::uint32_t member);
     void commit(Arena& arena);
     const float* positions(std::size_t member) const {
         return parts_[member].positions.empty() ? key_.members[member].positions : parts_[member].positions.data();

@@ -1,6 +1,7 @@
 // The update to a frame: which instances go together, which hierarchies are new, and where they stand.
 #include "trace/embree_scene.h"
 
+#include "geometry/matrix.h"
 #include "trace/embree_scene_impl.h"
 
 #include <algorithm>
@@ -13,42 +14,6 @@ namespace tessera {
 namespace {
 
 constexpr float kIdentity[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
-
-// Of the linear part of 3x4 rows.
-double determinant(const float* m) {
-    const double a = m[0], b = m[1], c = m[2], d = m[4], e = m[5], f = m[6], g = m[8], h = m[9], i = m[10];
-    return a * (e * i - f * h) - b * (d * i - f * g) + c * (d * h - e * g);
-}
-
-// The inverse of 3x4 rows, rounded to float at the end. False where rays would lose their precision in object space:
-// flattened objects, axes within a thousandth of one plane, and scales that overflow Embree's own inverse.
-bool invert(const float* m, float* out) {
-    const auto squared = [&](int c) {
-        const double x = m[c], y = m[4 + c], z = m[8 + c];
-        return x * x + y * y + z * z;
-    };
-    const double det = determinant(m), size = std::abs(det);
-    constexpr double kLeastVolume = 1e-3, kMostScale = 1e12;
-    if (!(size > 1e-30 && size < 1e30 && size > kLeastVolume * std::sqrt(squared(0) * squared(1) * squared(2))))
-        return false;
-    const auto at = [&](int r, int c) { return static_cast<double>(m[4 * (r % 3) + c % 3]); };
-    double inverse[3][3];
-    for (int r = 0; r < 3; ++r) {
-        for (int c = 0; c < 3; ++c)
-            inverse[r][c] = (at(c + 1, r + 1) * at(c + 2, r + 2) - at(c + 1, r + 2) * at(c + 2, r + 1)) / det;
-    }
-    for (int r = 0; r < 3; ++r) {
-        double offset = 0;
-        for (int c = 0; c < 3; ++c) {
-            if (!(std::abs(inverse[r][c]) < kMostScale)) return false;
-            out[4 * r + c] = static_cast<float>(inverse[r][c]);
-            offset -= inverse[r][c] * m[4 * c + 3];
-        }
-        out[4 * r + 3] = static_cast<float>(offset);
-        if (!std::isfinite(out[4 * r + 3])) return false;
-    }
-    return true;
-}
 
 // Instances with the same can stand together.
 struct Place {
@@ -141,7 +106,7 @@ void EmbreeScene::Impl::place(const Frame& frame) {
             made.kind = deformed                    ? GroupKind::kDeformed
                         : instance.mesh.is_stroke() ? GroupKind::kStrokes
                                                     : GroupKind::kStatic;
-            if (!invert(instance.object_to_camera, made.camera_to_object)) made.kind = GroupKind::kBaked;
+            if (!invert_rows(instance.object_to_camera, made.camera_to_object)) made.kind = GroupKind::kBaked;
         }
         ++placements[placement].count;
     }
@@ -168,7 +133,8 @@ void EmbreeScene::Impl::find_groups(const Frame& frame, const std::vector<TraceC
             const std::uint32_t i = slots[s].instance;
             const MeshView& mesh = frame.instances[i].mesh;
             key.members.push_back({mesh.positions, mesh.triangles, frame.prepared[i], mesh.vertex_count,
-                                   mesh.triangle_count, classes[i]});
+                                   mesh.triangle_count, classes[i], frame.instances[i].shape.kind,
+                                   frame.instances[i].shape.radius});
         }
         if (placement.kind == GroupKind::kStrokes || placement.kind == GroupKind::kBaked) {
             placement.group = passing.emplace_back(std::make_unique<Group>(device, key)).get();
@@ -204,11 +170,13 @@ void EmbreeScene::Impl::fill_slots(const Frame& frame, const std::vector<TraceCl
     checks = 0;
     for (const Placement& placement : placements) {
         // Embree's normals are right-handed in the space of the hierarchy; handedness is that of camera space.
-        const bool turned = placement.kind != GroupKind::kBaked && determinant(object_to_camera(frame, placement)) < 0;
+        const bool turned =
+            placement.kind != GroupKind::kBaked && determinant_of_rows(object_to_camera(frame, placement)) < 0;
         for (std::uint32_t m = 0; m < placement.count; ++m) {
             Slot& slot = slots[placement.first_slot + m];
             const TraceClass& type = classes[slot.instance];
             slot.triangle_numbers = placement.group->triangle_numbers(m);
+            slot.sphere = frame.instances[slot.instance].shape.kind == ShapeView::Kind::kSphere;
             slot.checks = (type.culled ? kCulledFromCamera : 0u) |
                           (type.culled && !type.seen_inside ? kCulledOtherwise : 0u) |
                           (type.mask & kMeetsSheer ? kSheer : 0u) | (type.undecided ? kUndecided : 0u);

@@ -13,6 +13,7 @@ struct EmbreeScene::Impl {
         const std::uint32_t* triangle_numbers;  // from Embree's; null where they are the same
         std::uint32_t instance;                 // index into Frame::instances
         std::uint32_t checks;                   // Check bits that rays must be put to
+        bool sphere;                            // has the names of ShapeView instead
         float front;                            // a ray sees the front where this times (normal . direction) < 0
     };
     enum Check : std::uint32_t { kCulledFromCamera = 1, kCulledOtherwise = 2, kSheer = 4, kUndecided = 8 };

@@ -1,7 +1,7 @@
 // The trace calls: rays are handed to Embree in place, and its numbers come back as the frame's.
 #include <tessera/error.h>
 
-#include "shading/vectors.h"
+#include "shading/shape_surface.h"
 #include "trace/embree_scene_impl.h"
 
 #include <algorithm>
@@ -95,7 +95,8 @@ bool back_is_culled(const Impl::Slot& slot, std::uint32_t checks, float normal_a
     return (slot.checks & checks & ~std::uint32_t{Impl::kUndecided}) != 0 && !(slot.front * normal_along_ray < 0.0f);
 }
 
-std::uint32_t number_of(const Impl::Slot& slot, std::uint32_t triangle) {
+std::uint32_t number_of(const Impl::Slot& slot, std::uint32_t triangle, float normal_along_ray) {
+    if (slot.sphere) return normal_along_ray > 0.0f ? kLeavingSphere : 0;
     return slot.triangle_numbers ? slot.triangle_numbers[triangle] : triangle;
 }
 
@@ -118,8 +119,8 @@ void filter_hits(const RTCFilterFunctionNArguments* args) {
         args->valid[i] = 0;
         if (!seen || !sheer || !context.sheer) continue;
         try {
-            context.sheer->push_back({RTCRayN_id(ray, n, i), slot.instance, number_of(slot, RTCHitN_primID(hit, n, i)),
-                                      RTCRayN_tfar(ray, n, i)});
+            context.sheer->push_back({RTCRayN_id(ray, n, i), slot.instance,
+                                      number_of(slot, RTCHitN_primID(hit, n, i), along), RTCRayN_tfar(ray, n, i)});
         } catch (...) {  // nothing may leave through Embree
             context.failed = true;
         }
@@ -199,13 +200,6 @@ void intersect(const Lanes<W>& lanes, RayPacket<W>& rays, TraceContext& context)
     if (context.failed) throw Error(ErrorCode::kLimit, "there is not enough memory for the surfaces along a ray");
 }
 
-// Embree's numbers of a lane's hit become the frame's.
-template <int W>
-void name_hit(RayPacket<W>& r, int i, const Impl::Slot& slot) {
-    r.instance[i] = slot.instance;
-    r.triangle[i] = number_of(slot, r.triangle[i]);
-}
-
 // For as long as it lives, the rays do not meet the surfaces of some kinds.
 template <int W>
 class LeaveOut {
@@ -252,6 +246,13 @@ static float normal_along_ray(const Impl& impl, const RayPacket<W>& r, int i) {
     return r.ng_x[i] * x + r.ng_y[i] * y + r.ng_z[i] * z;
 }
 
+// Embree's numbers of a lane's hit become the frame's.
+template <int W>
+static void name_hit(const Impl& impl, RayPacket<W>& r, int i, const Impl::Slot& slot) {
+    r.triangle[i] = number_of(slot, r.triangle[i], slot.sphere ? normal_along_ray(impl, r, i) : 0.0f);
+    r.instance[i] = slot.instance;
+}
+
 template <int W>
 void EmbreeScene::nearest(const int* valid, RayPacket<W>& rays, bool coherent, bool from_camera,
                           std::vector<SheerHit>* sheer, bool checked) const {
@@ -287,7 +288,7 @@ void EmbreeScene::nearest(const int* valid, RayPacket<W>& rays, bool coherent, b
             rays.t_far[i] = t_far[i];
             rays.triangle[i] = rays.geometry[i] = rays.instance[i] = kNoHit;
         } else {
-            name_hit(rays, i, slot);
+            name_hit(impl, rays, i, slot);
         }
     }
     if (!more) return;
@@ -295,7 +296,8 @@ void EmbreeScene::nearest(const int* valid, RayPacket<W>& rays, bool coherent, b
     context.sheer = sheer;
     intersect(again, rays, context);
     for (int i = 0; i < W; ++i)
-        if (again.on[i] && rays.geometry[i] != kNoHit) name_hit(rays, i, impl.slot(rays.instance[i], rays.geometry[i]));
+        if (again.on[i] && rays.geometry[i] != kNoHit)
+            name_hit(impl, rays, i, impl.slot(rays.instance[i], rays.geometry[i]));
 }
 
 template <int W>

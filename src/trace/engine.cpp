@@ -76,9 +76,7 @@ void LightTracer::begin(const Frame& frame, const ShadingContext& shading, const
     t.bounces = settings.bounces;
     t.max_depth = settings.max_depth;
     t.least = settings.least;
-    // What a pixel gains per unit of distance.
-    const ProjectionView& picture = frame.projection;
-    t.spread = picture.orthographic ? 0.0f : 2.0f / (picture.height * picture.scale_y);
+    t.spread = picture_spread(frame.projection);
     std::copy_n(settings.background, 3, t.background);
     for (const std::unique_ptr<WaveShader>& shader : state_->idle) shader->begin(t);
 }

@@ -1,5 +1,6 @@
 #include "trace/sheer_surface.h"
 
+#include "shading/shape_surface.h"
 #include "shading/traced_shade.h"
 
 namespace tessera {
@@ -10,13 +11,28 @@ bool SheerSurface::select(std::uint32_t instance, std::uint32_t triangle) {
     triangle_ = triangle;
     recorded_ = false;
     const InstanceView& view = frame_.instances[instance];
+    if (view.shape) return visible_ = true;  // rays know
     setup_triangle(view, triangle, frame_.projection, setup_);
     visible_ = setup_.visible() && (setup_.front(view) || material(instance).double_sided);
     return visible_;
 }
 
+// The camera's hit on the selected shape.
+RaySurface<float> SheerSurface::shape_point(SamplePosition at) const {
+    const ConeRay<float> ray =
+        picture_ray(frame_.projection, rays_, static_cast<float>(at.x), static_cast<float>(at.y));
+    return shape_surface<float>(frame_.instances[instance_], ray, triangle_ == kLeavingSphere,
+                                picture_spread(frame_.projection), context_.footprint_scale);
+}
+
+float SheerSurface::depth(SamplePosition at) const {
+    if (frame_.instances[instance_].shape) return depth_of(frame_.projection, shape_point(at).point.position);
+    return setup_.depth.at(at.x, at.y);
+}
+
 float SheerSurface::alpha(SamplePosition at) {
     const InstanceView& view = frame_.instances[instance_];
+    if (view.shape) return base_color(material(instance_), shape_point(at).point).w;
     if (!recorded_) {
         layout_ = surface_layout(view.mesh, material(instance_), frame_.projection.orthographic);
         make_surface_record(view, triangle_, setup_, frame_.projection, layout_, record_);
@@ -32,6 +48,8 @@ float SheerSurface::alpha(SamplePosition at) {
 SurfacePoint<float> SheerSurface::hit(std::uint32_t instance, std::uint32_t triangle, const ConeRay<float>& ray,
                                       float spread) const {
     const InstanceView& view = frame_.instances[instance];
+    if (view.shape)
+        return shape_surface<float>(view, ray, triangle == kLeavingSphere, spread, context_.footprint_scale).point;
     Corner<float> corners[3];
     for (std::size_t i = 0; i < 3; ++i)
         corners[i] = fetch_corner(view.mesh, view.mesh.triangles[3 * std::size_t{triangle} + i]);

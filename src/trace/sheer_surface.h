@@ -18,7 +18,7 @@ class SheerSurface {
     // Turns to a triangle. False where the camera does not see it: outside, without area, or from its culled back.
     bool select(std::uint32_t instance, std::uint32_t triangle);
     // Of the selected one: the canonical depth, and the material's alpha.
-    float depth(SamplePosition at) const { return setup_.depth.at(at.x, at.y); }
+    float depth(SamplePosition at) const;
     float alpha(SamplePosition at);
     // Alpha where a ray hits the triangle, whoever sees it; `width` of the ray's footprint grows by `spread`.
     float alpha(std::uint32_t instance, std::uint32_t triangle, const ConeRay<float>& ray, float spread) const;
@@ -32,6 +32,7 @@ class SheerSurface {
     }
 
   private:
+    RaySurface<float> shape_point(SamplePosition at) const;
     SurfacePoint<float> hit(std::uint32_t instance, std::uint32_t triangle, const ConeRay<float>& ray,
                             float spread) const;
 

@@ -1,5 +1,5 @@
 // The ray tracer's kernels but for shading, compiled once per instruction set, and the table of all.
-#include "trace/surface_kernel.h"
+#include "trace/shape_kernel.h"
 
 namespace tessera::TESSERA_ISA_NAMESPACE {
 
@@ -7,8 +7,9 @@ namespace tessera::TESSERA_ISA_NAMESPACE {
 void shade_traced_points(const TracedShadeJob& job);
 
 const TraceKernels& trace_kernels() {
-    static constexpr TraceKernels kKernels{&primary_rays, &pack,        &flat_planes,         &primary_surfaces,
-                                           &ray_surfaces, &shadow_rays, &shade_traced_points, &spawn};
+    static constexpr TraceKernels kKernels{&primary_rays, &pack,           &flat_planes, &primary_surfaces,
+                                           &ray_surfaces, &shape_surfaces, &shadow_rays, &shade_traced_points,
+                                           &spawn};
     return kKernels;
 }
 

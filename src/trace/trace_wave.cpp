@@ -44,6 +44,31 @@ void WaveShader::see_sheer(Wave& wave, std::uint32_t first, const RayPacket<kPac
     }
 }
 
+// The points of one instance that is drawn by its formula.
+void WaveShader::find_shape_points(const TileTask& task, Wave& wave, const InstanceRun& run, bool camera) const {
+    ShapeSurfacesJob job{};
+    job.instance = &task.frame.instances[run.instance];
+    job.material = &scene_->shading->materials[job.instance->material];
+    job.layout = task.shading_batches.layouts[run.instance];
+    job.projection = &task.frame.projection;
+    if (camera) {
+        job.x = x_.data() + run.first;
+        job.y = y_.data() + run.first;
+    } else {
+        job.rays = wave.rays;
+        job.ray = wave.ray.data() + run.first;
+        job.distance = wave.distance.data();
+    }
+    job.name = wave.hit_triangle.data() + run.first;
+    job.count = run.count;
+    job.first = run.first;
+    job.spread = scene_->spread;
+    job.footprint_scale = scene_->shading->footprint_scale;
+    job.instance_size = scene_->instance_size[run.instance];
+    job.points = wave.points;
+    scene_->kernels->shape_surfaces(job);
+}
+
 void WaveShader::trace(const TileTask& task, Wave& wave, bool coherent) {
     const bool looks = scene_->scene->has_undecided();
     for (std::uint32_t first = 0; first < wave.ray_count; first += kPacketWidth) {
@@ -69,6 +94,10 @@ void WaveShader::trace(const TileTask& task, Wave& wave, bool coherent) {
     }
     arrange(task, wave);
     for (const InstanceRun& run : wave.runs) {
+        if (task.frame.instances[run.instance].shape) {
+            find_shape_points(task, wave, run, false);
+            continue;
+        }
         RaySurfacesJob job{};
         job.instance = &task.frame.instances[run.instance];
         job.material = &scene_->shading->materials[job.instance->material];

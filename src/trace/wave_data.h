@@ -146,6 +146,24 @@ struct RaySurfacesJob {
     float* distance;  // by point: how far the ray came
 };
 
+// Surface points of hits on an instance's shape (shape_surface.h): of rays, or of the camera's through picture
+// positions.
+struct ShapeSurfacesJob {
+    const InstanceView* instance;
+    const MaterialView* material;
+    SurfaceLayout layout;
+    const ProjectionView* projection;
+    WaveArrays rays;            // none: the camera's
+    const std::uint32_t* ray;   // by point: which
+    const std::int32_t *x, *y;  // or the picture position
+    const std::uint32_t* name;  // by point: as ShapeView says
+    std::uint32_t count, first;
+    float spread, footprint_scale;
+    float instance_size;  // its largest coordinate in camera space
+    WaveArrays points;
+    float* distance;  // by point: how far the ray came; null for the camera's
+};
+
 // The rays from all points of a wave to one light, of those that it may reach, one after the other.
 struct ShadowRaysJob {
     const ShadingContext* shading;
@@ -198,6 +216,7 @@ struct TraceKernels {
     void (*flat_planes)(const FlatPlanesJob& job);
     void (*primary_surfaces)(const PrimarySurfacesJob& job);
     void (*ray_surfaces)(const RaySurfacesJob& job);
+    void (*shape_surfaces)(const ShapeSurfacesJob& job);
     void (*shadow_rays)(ShadowRaysJob& job);
     void (*shade)(const TracedShadeJob& job);
     void (*spawn)(SpawnJob& job);

@@ -96,11 +96,18 @@ void WaveShader::take_samples(const TileTask& task, const SampleList& samples, s
         x[p] = samples.x[from], y[p] = samples.y[from], ordinal[p] = samples.ordinal[from];
     }
     std::fill_n(wave.points[kTimes], wave.point_count, 1.0f);
-    for (const InstanceRun& run : wave.runs)
-        std::fill_n(wave.points[kRounding] + run.first, run.count + kMaxLanes, scene_->instance_size[run.instance]);
     const ProjectionView& picture = task.frame.projection;
-    const float pixel = 2.0f / (picture.height * picture.scale_y);
+    const float pixel = pixel_width(picture);
+    auto run = wave.runs.begin();
     for (const PointBatch& b : wave.batches) {
+        const auto first_run = run;
+        for (; run != wave.runs.end() && run->first < b.first + b.count; ++run)
+            std::fill_n(wave.points[kRounding] + run->first, run->count + kMaxLanes,
+                        scene_->instance_size[run->instance]);
+        if (task.frame.instances[b.instance].shape) {
+            for (auto r = first_run; r != run; ++r) find_shape_points(task, wave, *r, true);
+            continue;
+        }
         PrimarySurfacesJob job{};
         job.source = &task.source;
         job.material = &scene_->shading->materials[task.frame.instances[b.instance].material];

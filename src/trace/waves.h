@@ -58,6 +58,7 @@ class WaveShader final : public PointShader {
     void find_planes(const TileTask& task, const SampleList& samples);
     // trace_wave.cpp
     void trace(const TileTask& task, Wave& wave, bool coherent);
+    void find_shape_points(const TileTask& task, Wave& wave, const InstanceRun& run, bool camera) const;
     void see_sheer(Wave& wave, std::uint32_t first, const RayPacket<kPacketWidth>& packet);
     void miss(Wave& wave, std::uint32_t ray) const;
     // light.cpp
