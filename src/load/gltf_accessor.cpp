@@ -6,14 +6,14 @@
 namespace tessera {
 namespace {
 
-struct Shape {
+struct AccessorShape {
     std::string_view name;
     std::size_t rows, columns;
 };
 // Elements of an accessor that is all zeros but for sparse ones.
 constexpr std::size_t kMostZeros = std::size_t{1} << 24;
 
-constexpr std::array<Shape, 7> kShapes = {
+constexpr std::array<AccessorShape, 7> kShapes = {
     {{"SCALAR", 1, 1}, {"VEC2", 2, 1}, {"VEC3", 3, 1}, {"VEC4", 4, 1}, {"MAT2", 2, 2}, {"MAT3", 3, 3}, {"MAT4", 4, 4}}};
 
 ComponentType component_type(const Json& json) {
@@ -101,7 +101,7 @@ Accessor open_accessor(GltfDocument& document, std::size_t index, Zeros zeros) {
     a.component = component_type(json.at("componentType"));
     a.type = json.at("type").string();
     const auto* const shape =
-        std::find_if(kShapes.begin(), kShapes.end(), [&](const Shape& s) { return s.name == a.type; });
+        std::find_if(kShapes.begin(), kShapes.end(), [&](const AccessorShape& s) { return s.name == a.type; });
     if (shape == kShapes.end()) json.at("type").fail("there is no accessor type \"" + std::string(a.type) + "\"");
     a.rows = shape->rows, a.columns = shape->columns;
     a.normalized = json.boolean_or("normalized", false);
