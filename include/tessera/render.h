@@ -150,7 +150,7 @@ struct RenderResult {
                       // filtered: kMitchell may leave radiances a little below 0
     Image alpha;      // kF32, the mean alpha of the pixel's samples, which is that of `linear`
     Image depth;      // kF32, metres along the view axis; infinite where nothing was hit
-    Image primitive;  // kU32, 1 + number of the triangle, line or point in submission order; 0: none
+    Image primitive;  // kU32, 1 + number of the triangle, line, point or shape in submission order; 0: none
     Image node;       // kU32, 1 + index into Scene::nodes; 0: none
     Image material;   // kU32, 1 + index into Scene::materials, or 1 + their number for the default; 0: none
     // kRgb32f, unit, on the viewer's side: interpolated, and bent by the normal map. 0 where nothing was hit, like
@@ -170,7 +170,7 @@ struct RenderResult {
 
 TESSERA_API RenderResult render(const Scene& scene, const RenderOptions& options = {});
 
-// World-space box of everything that would be drawn, of the scene as it stands.
+// World-space box of everything that would be drawn, of the scene as it stands; but for planes without end.
 TESSERA_API Bounds3 visible_bounds(const Scene& scene);
 
 }  // namespace tessera

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <tessera/export.h>
+#include <tessera/shading_model.h>
 #include <tessera/types.h>
 
 #include <cstdint>

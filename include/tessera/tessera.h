@@ -11,6 +11,7 @@
 #include <tessera/render.h>
 #include <tessera/renderer.h>
 #include <tessera/scene.h>
+#include <tessera/shape.h>
 #include <tessera/threads.h>
 #include <tessera/transform.h>
 #include <tessera/types.h>

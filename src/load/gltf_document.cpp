@@ -29,6 +29,7 @@ constexpr std::string_view kKnownExtensions[] = {"KHR_draco_mesh_compression",
                                                  "TESSERA_materials_phong",
                                                  "TESSERA_lights",
                                                  "TESSERA_volume",
+                                                 "TESSERA_shape",
                                                  "KHR_materials_transmission",
                                                  "KHR_materials_volume",
                                                  "KHR_materials_dispersion"};

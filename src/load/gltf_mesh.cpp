@@ -2,8 +2,10 @@
 #include "load/gltf_accessor.h"
 #include "load/gltf_draco.h"
 #include "load/gltf_parts.h"
+#include "load/gltf_shape.h"
 #include "scene/counts.h"
 #include "scene/numbers.h"
+#include "scene/shapes.h"
 
 #include <algorithm>
 #include <charconv>
@@ -176,19 +178,15 @@ DracoTriangles packed_triangles(const GltfDocument& document, const Json& json, 
     return {static_cast<std::size_t>(triangles), strip};
 }
 
-Primitive read_primitive(GltfDocument& document, const Json& json) {
-    Primitive p;
+// Vertices, indices and morph targets, into a primitive without any.
+void read_vertices(GltfDocument& document, const Json& json, Primitive& p) {
     LoadContext& context = document.context();
-    context.charge(sizeof(Primitive), json.place());
-    document.note_extensions(json);
-    p.extras = json.raw_or_empty("extras");
     p.mode = read_mode(json);
-    p.material = json.reference_or_none("material", document.size(GltfArray::kMaterials), "material");
     const Json attributes = json.at("attributes");
     const std::optional<Json> positions = attributes.find("POSITION");
     if (!positions) {
         context.warn(attributes.place() + ": a primitive without positions is not drawn");
-        return p;
+        return;
     }
     PrimitiveSource source{document};
     if (const std::optional<Json> packed = find_extension(json, "KHR_draco_mesh_compression"))
@@ -202,9 +200,19 @@ Primitive read_primitive(GltfDocument& document, const Json& json) {
             context.charge(sizeof(MorphTarget), target.place());
             p.targets.push_back(read_target(document, target, p.positions.size()));
         });
+    if (const std::optional<Json> indices = json.find("indices")) read_primitive_indices(source, *indices, p);
+}
+
+Primitive read_primitive(GltfDocument& document, const Json& json) {
+    document.context().charge(sizeof(Primitive), json.place());
+    document.note_extensions(json);
+    const std::optional<Shape> shape = find_shape(json);
+    Primitive p = shape ? read_shape_primitive(document, json, *shape) : Primitive{};
+    p.extras = json.raw_or_empty("extras");
+    p.material = json.reference_or_none("material", document.size(GltfArray::kMaterials), "material");
+    if (!shape) read_vertices(document, json, p);
     if (const std::optional<Json> variants = find_extension(json, "KHR_materials_variants"))
         read_variants(document, *variants, p);
-    if (const std::optional<Json> indices = json.find("indices")) read_primitive_indices(source, *indices, p);
     return p;
 }
 
@@ -224,6 +232,10 @@ std::uint64_t saturating_product(std::uint64_t triangles, std::uint64_t instance
 std::uint64_t count_triangles(const GltfDocument& document, const Json& mesh) {
     std::uint64_t sum = 0;
     mesh.at("primitives").each([&](const Json& json, std::size_t) {
+        if (const std::optional<Shape> shape = find_shape(json)) {
+            sum = saturating_sum(sum, shape_counts(*shape).triangles);
+            return;
+        }
         std::optional<Json> counted = json.at("attributes").find("POSITION");
         if (!counted) return;
         if (const std::optional<Json> indices = json.find("indices")) counted = indices;

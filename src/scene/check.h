@@ -36,6 +36,9 @@ void check_appearance(const Scene& scene);
 // Attribute lengths and morph targets; references of primitives; skins fit their meshes. With `values`
 // also every index and number.
 void check_meshes(const Scene& scene, bool values);
+// A primitive with a shape, at `place`, is what shape_primitive() makes in kind; with `values` its vertices lie on the
+// shape.
+void check_shape(const Primitive& primitive, const Place& place, bool values);
 // Key counts, increasing times, references. With `values` also every number of the keys.
 void check_animations(const Scene& scene, bool values);
 

@@ -55,6 +55,7 @@ void check_primitive(const Scene& scene, const Primitive& p, const Place& place,
     if (values && !p.indices.empty() && largest_index(p.indices) >= n)
         place.child("indices").fail("index " + std::to_string(largest_index(p.indices)) + " of " + std::to_string(n) +
                                     " vertices");
+    if (p.shape) check_shape(p, place.child("shape"), values);
 }
 
 // The number of morph targets, the same for all primitives that hold vertices.

@@ -1,4 +1,4 @@
-// How many triangles, lines or points a primitive draws.
+// How many triangles, lines, points or shapes a primitive draws.
 #pragma once
 
 #include <tessera/scene.h>
@@ -44,8 +44,9 @@ inline std::uint64_t vertex_references(const Primitive& primitive) {
 inline std::uint64_t triangle_count(const Primitive& primitive) {
     return triangle_count(primitive.mode, vertex_references(primitive));
 }
+// A shape is one, whatever its triangles.
 inline std::uint64_t element_count(const Primitive& primitive) {
-    return element_count(primitive.mode, vertex_references(primitive));
+    return primitive.shape ? 1 : element_count(primitive.mode, vertex_references(primitive));
 }
 
 }  // namespace tessera
