@@ -3,6 +3,7 @@
 #include <tessera/error.h>
 
 #include "geometry/matrix.h"
+#include "scene/shapes.h"
 #include "simd/math.h"
 
 #include <algorithm>
@@ -204,7 +205,15 @@ Frame make_frame(const Scene& scene, const View& view, int width, int height, co
     return frame;
 }
 
-float largest_coordinate(const InstanceView& instance, const Bounds3& box) {
+float largest_coordinate(const InstanceView& instance, const DrawnMesh& mesh) {
+    Bounds3 box = mesh.bounds;
+    // Of a plane without end no facet is much larger than its distance from the middle.
+    const std::optional<Shape>& shape = prepared_mesh(mesh).primitive().shape;
+    if (shape && is_endless(*shape)) {
+        box = {};
+        box.add(Vec3{-1, 0, -1});
+        box.add(Vec3{1, 0, 1});
+    }
     const float most[3] = {std::max(std::abs(box.min.x), std::abs(box.max.x)),
                            std::max(std::abs(box.min.y), std::abs(box.max.y)),
                            std::max(std::abs(box.min.z), std::abs(box.max.z))};

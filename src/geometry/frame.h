@@ -57,6 +57,6 @@ Frame make_frame(const Scene& scene, const View& view, int width, int height, co
 bool outside_view(const InstanceView& instance, const Bounds3& object_bounds);
 
 // A bound of the terms that coordinates of the instance in camera space are sums of: what their rounding goes by.
-float largest_coordinate(const InstanceView& instance, const Bounds3& object_bounds);
+float largest_coordinate(const InstanceView& instance, const DrawnMesh& mesh);
 
 }  // namespace tessera

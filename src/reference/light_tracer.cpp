@@ -35,7 +35,7 @@ LightTracerReference::LightTracerReference(const Frame& frame, const Bvh& bvh, c
     : frame_(frame), bvh_(bvh), context_(context), settings_(settings) {
     spread_ = picture_spread(frame.projection);
     for (std::size_t i = 0; i < frame.instances.size(); ++i)
-        sizes_.push_back(largest_coordinate(frame.instances[i], frame.prepared[i]->bounds));
+        sizes_.push_back(largest_coordinate(frame.instances[i], *frame.prepared[i]));
 }
 
 // The rasterizer's point moved onto the triangle's own plane.

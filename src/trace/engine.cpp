@@ -65,7 +65,7 @@ void LightTracer::begin(const Frame& frame, const ShadingContext& shading, const
         classes.push_back(class_of(instance, shading.materials[instance.material]));
         t.simple = t.simple && classes.back().mask == kMeetsSolid;
         t.even_transmittance.push_back(even_transmittance(instance, shading.materials[instance.material]));
-        t.instance_size.push_back(largest_coordinate(instance, frame.prepared[i]->bounds));
+        t.instance_size.push_back(largest_coordinate(instance, *frame.prepared[i]));
     }
     state_->scene.update(frame, classes, arena);
     t.scene = &state_->scene;
