@@ -460,9 +460,50 @@ def glass():
     return doc
 
 
+def shapes():
+    """Spheres, discs and planes by their formulas."""
+    doc = Document("Spheres, discs and a plane without end")
+    checker = doc.texture("checker", "checker.png")
+    tiles = doc.material("tiles", (1, 1, 1), roughness=0.8, texture=checker, repeat=(0.5, 0.5))
+    doc.node("ground", mesh=doc.shape("ground", tiles, "plane"))
+
+    def ball(name, radius, x, z, material, **place):
+        doc.node(name, translation=[x, radius, z], mesh=doc.shape(name, material, "sphere", radius=radius), **place)
+
+    def gloss(color, mirror, shininess):
+        return {"extensions": {PHONG: {"model": "phong", "ambient": color, "diffuse": color, "specular": [0.7, 0.7, 0.7],
+                                       "shininess": shininess, "mirror": [mirror] * 3}}}
+
+    ball("mirror", 1.0, 0.35, -0.75, doc.material("mirror", (0.9, 0.9, 0.9), 1.0, 0.05, **gloss([0.02, 0.02, 0.02], 0.9, 200.0)))
+    ball("glass", 0.6, -0.75, 1.35, doc.material("glass", roughness=0.0, extensions={
+        "KHR_materials_transmission": {"transmissionFactor": 1.0}, "KHR_materials_ior": {"ior": 1.5},
+        "KHR_materials_volume": {"thicknessFactor": 1.2}}))
+    ball("beach ball", 0.7, -2.05, -0.35, doc.material("beach ball", srgb("#f2b134"), roughness=0.5, texture=checker,
+                                                      repeat=(4, 2)), rotation=about([1, 0, 0.6], 28))
+    ball("golf ball", 0.34, 0.95, 1.75, doc.material("golf ball", srgb("#e8e6df"), roughness=0.35, normalTexture={
+        "index": doc.texture("dimples", "dimples-normal.png"), "scale": 0.8,
+        "extensions": {"KHR_texture_transform": {"scale": [6, 3]}}}))
+    red = srgb("#b3261e")
+    doc.node("ellipsoid", translation=[2.3, 0.55, 0.55], rotation=about([0, 1, 0], 24), scale=[1.1, 0.55, 0.6],
+             mesh=doc.shape("ellipsoid", doc.material("lacquer", red, roughness=0.3, **gloss(red, 0.12, 80.0)), "sphere"))
+    lattice = doc.material("lattice", srgb("#d7e0d0"), roughness=0.6, texture=doc.texture("lattice", "lattice.png"),
+                           repeat=(5, 5), alphaMode="MASK", doubleSided=True)
+    doc.node("round screen", translation=[-1.35, 1.3, -2.6], rotation=about([1, 0, 0], 90),
+             mesh=doc.shape("round screen", lattice, "disc", radius=1.3))
+    blue = srgb("#27496d")
+    pane = doc.material("dark mirror", blue, 0.4, 0.1, doubleSided=True, **gloss(blue, 0.45, 120.0))
+    stand = doc.node("stand", translation=[2.45, 0.95, -2.4], rotation=about([0, 1, 0], -24))
+    doc.node("dark mirror", stand, rotation=about([1, 0, 0], 90), mesh=doc.shape("dark mirror", pane, "plane", size=[2.2, 1.9]))
+    doc.light("sun", "directional", (1, 0.95, 0.87), 8.0, [-5, 5.2, 1.4], [0, 0, 0])
+    doc.light("lamp", "point", (0.8, 0.88, 1), 60.0, [4.5, 4.2, 4.0])
+    doc.camera("main", [0.3, 2.15, 7.3], [0.15, 0.66, 0], 32, zfar=None)
+    doc.camera("above", [0.2, 5.2, 5.6], [0.1, 0.3, -0.3], 40, zfar=None)
+    return doc
+
+
 SCENES = {"cornell-box": cornell_box, "spheres": spheres, "lights": lights, "materials": materials,
           "hierarchy": hierarchy, "transparency": transparency, "motion": motion,
-          "lines": lines, "glass": glass}
+          "lines": lines, "glass": glass, "shapes": shapes}
 
 
 def make_all(folder):

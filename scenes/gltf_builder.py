@@ -233,7 +233,7 @@ class Document:
     """A glTF asset under construction. Functions return indices, as glTF refers to its parts."""
 
     def __init__(self, title):
-        self.title, self.data, self.extensions = title, bytearray(), set()
+        self.title, self.data, self.extensions, self.required = title, bytearray(), set(), set()
         self.parts = {k: [] for k in ("nodes", "meshes", "materials", "textures", "samplers", "images", "cameras",
                                       "skins", "animations", "accessors", "bufferViews")}
         self.lights, self.roots, self.shapes = [], [], {}
@@ -273,6 +273,13 @@ class Document:
                     "TEXCOORD_0": self.accessor(key + " uvs", uvs, "VEC2", FLOAT, ARRAY_BUFFER)},
                 "indices": self.accessor(key + " indices", triangles, "SCALAR", USHORT, ELEMENT_ARRAY_BUFFER)}
         return self.add("meshes", {"name": name, "primitives": [{**self.shapes[key], "material": material}]})
+
+    def shape(self, name, material, kind, **numbers):
+        """A mesh of one primitive that is a "sphere", a "disc" or a "plane" of TESSERA_shape."""
+        self.extensions.add("TESSERA_shape")
+        self.required.add("TESSERA_shape")  # no triangles stand in for it
+        return self.add("meshes", {"name": name, "primitives": [
+            {"attributes": {}, "material": material, "extensions": {"TESSERA_shape": {"type": kind, **numbers}}}]})
 
     def strokes(self, name, mode, positions, material, colors=None, normals=None, indices=None):
         """A mesh of points (mode 0), lines (1), a loop (2) or a strip of lines (3)."""
@@ -334,16 +341,22 @@ class Document:
         return self.add("textures", {"name": name, "source": self.add("images", {"name": name, "uri": uri}),
                                      "sampler": self.add("samplers", sampler)})
 
-    def material(self, name, color=(1, 1, 1), metallic=0.0, roughness=0.8, texture=None, alpha=1.0, **more):
+    def material(self, name, color=(1, 1, 1), metallic=0.0, roughness=0.8, texture=None, alpha=1.0, repeat=None, **more):
+        """`repeat`: how often the texture goes into u and v of 0 to 1."""
         pbr = {"baseColorFactor": list(color) + [alpha], "metallicFactor": metallic, "roughnessFactor": roughness}
         if texture is not None:
             pbr["baseColorTexture"] = {"index": texture}
+            if repeat:
+                pbr["baseColorTexture"]["extensions"] = {"KHR_texture_transform": {"scale": list(repeat)}}
+                self.extensions.add("KHR_texture_transform")
         self.extensions.update(more.get("extensions", {}))
         return self.add("materials", {"name": name, "pbrMetallicRoughness": pbr, **more})
 
     def camera(self, name, eye, target, yfov_degrees, znear=0.1, zfar=100.0):
-        camera = {"name": name, "type": "perspective",
-                  "perspective": {"yfov": math.radians(yfov_degrees), "znear": znear, "zfar": zfar}}
+        lens = {"yfov": math.radians(yfov_degrees), "znear": znear}
+        if zfar:
+            lens["zfar"] = zfar
+        camera = {"name": name, "type": "perspective", "perspective": lens}
         return self.node(name, translation=list(eye), rotation=looking(eye, target), camera=self.add("cameras", camera))
 
     def light(self, name, kind, color, intensity, position, target=None, parent=None, cone=None):
@@ -364,11 +377,14 @@ class Document:
                               "copyright": "Tessera authors, Apache-2.0"}}
         if self.extensions:
             document["extensionsUsed"] = sorted(self.extensions)
+        if self.required:
+            document["extensionsRequired"] = sorted(self.required)
         if self.lights:
             document["extensions"] = {"KHR_lights_punctual": {"lights": self.lights}}
         document.update({"scene": 0, "scenes": [{"name": self.title, "nodes": self.roots}]})
         document.update({k: v for k, v in self.parts.items() if v})
-        document["buffers"] = [{"name": stem, "byteLength": len(self.data), "uri": stem + ".bin"}]
+        if self.data:
+            document["buffers"] = [{"name": stem, "byteLength": len(self.data), "uri": stem + ".bin"}]
+            (folder / (stem + ".bin")).write_bytes(bytes(self.data))
         with open(folder / (stem + ".gltf"), "w", encoding="utf-8") as f:
             f.write(to_json(document) + "\n")
-        (folder / (stem + ".bin")).write_bytes(bytes(self.data))

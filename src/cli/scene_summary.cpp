@@ -123,6 +123,7 @@ SceneSummary summarize(const Scene& scene) {
         Elements& elements = of_mesh.emplace_back();
         for (const Primitive& primitive : mesh.primitives) {
             ++summary.primitives;
+            summary.shapes += primitive.shape ? 1 : 0;
             summary.vertices += primitive.positions.size();
             count(primitive, elements);
         }
@@ -159,13 +160,14 @@ std::string summary_text(const std::string& file, const Scene& scene, const Scen
     if (s.drawn_points > 0) text += line("points", std::to_string(s.drawn_points) + " drawn");
     text += line("vertices", std::to_string(s.vertices));
     text += s.bounds.empty()
-                ? line("bounds", "nothing is drawn")
+                ? line("bounds", s.drawn_triangles > 0 ? "none" : "nothing is drawn")
                 : line("bounds", "(" + vector_text(s.bounds.min) + ") to (" + vector_text(s.bounds.max) + ")");
     text += line("memory", number(static_cast<double>(s.memory_bytes) / 1048576) + " MiB");
     text +=
         line("nodes", std::to_string(scene.nodes.size()) + " in " + std::to_string(scene.scenes.size()) + " scenes");
     text +=
-        line("meshes", std::to_string(scene.meshes.size()) + " with " + std::to_string(s.primitives) + " primitives");
+        line("meshes", std::to_string(scene.meshes.size()) + " with " + std::to_string(s.primitives) + " primitives" +
+                           (s.shapes > 0 ? ", " + std::to_string(s.shapes) + " of them shapes" : ""));
     text += list("materials", scene.materials, [](const Material& m) { return titled(m, material_text(m)); });
     text += line("textures", std::to_string(scene.textures.size()));
     text += list("pictures", scene.pictures, [](const Picture& p) {
@@ -190,7 +192,7 @@ std::string summary_json(const std::string& file, const Scene& scene, const Scen
     json.member("generator", scene.generator).member("copyright", scene.copyright);
     json.key("counts").begin_object();
     json.member("scenes", scene.scenes.size()).member("nodes", scene.nodes.size());
-    json.member("meshes", scene.meshes.size()).member("primitives", s.primitives);
+    json.member("meshes", scene.meshes.size()).member("primitives", s.primitives).member("shapes", s.shapes);
     json.member("vertices", s.vertices).member("triangles", s.triangles);
     json.member("drawn_instances", s.drawn_instances).member("drawn_triangles", s.drawn_triangles);
     json.member("drawn_lines", s.drawn_lines).member("drawn_points", s.drawn_points);

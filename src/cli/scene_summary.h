@@ -10,6 +10,7 @@ namespace tessera::cli {
 
 struct SceneSummary {
     std::uint64_t primitives = 0, vertices = 0, triangles = 0;  // as stored
+    std::uint64_t shapes = 0;                                   // primitives that are spheres, discs and planes
     std::uint64_t drawn_instances = 0, drawn_triangles = 0;     // as the active scene draws them
     std::uint64_t drawn_points = 0, drawn_lines = 0;
     std::uint64_t memory_bytes = 0;

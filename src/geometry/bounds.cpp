@@ -5,6 +5,7 @@
 #include "geometry/node_transforms.h"
 #include "geometry/prepared_scene.h"
 #include "geometry/triangles.h"
+#include "scene/shapes.h"
 
 #include <tessera/render.h>
 
@@ -85,6 +86,7 @@ bool is_deformed(const Scene& scene) {
 }  // namespace
 
 std::vector<Vec3> used_positions(const Primitive& primitive) {
+    if (primitive.shape && is_endless(*primitive.shape)) return {};
     const std::size_t count = used_index_count(primitive);
     if (primitive.indices.empty()) {
         const std::span<const Vec3> used = std::span(primitive.positions).first(count);

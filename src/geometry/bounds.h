@@ -11,7 +11,7 @@
 namespace tessera {
 
 // The positions that complete points, lines or triangles of the primitive use, each once, in vertex
-// order.
+// order. None of a plane without end: where it stops means nothing.
 std::vector<Vec3> used_positions(const Primitive& primitive);
 
 // The box of the primitive's used positions under an affine matrix. Points that are not finite after

@@ -61,7 +61,7 @@ class PreparedScene {
 
     // choose_camera() for this scene at its moment. The latest answer is remembered.
     const PlacedCamera& camera(const View& view, double aspect);
-    // Calls `visit` with every vertex that is drawn, in world space.
+    // Calls `visit` with every vertex that is drawn, in world space; not with those of planes without end.
     void visit_points(const PointVisitor& visit) const;
 
   private:

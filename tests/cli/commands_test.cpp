@@ -52,6 +52,28 @@ TEST_F(Cli, InfoCountsPointsAndLines) {
               std::string::npos);
 }
 
+TEST_F(Cli, InfoCountsShapes) {
+    const auto write = [&](const std::string& more) {
+        std::ofstream(folder_ / "s.gltf")
+            << R"({"asset":{"version":"2.0"},"nodes":[{"mesh":0}],"scenes":[{"nodes":[0]}],"meshes":[{"primitives":[)" +
+                   more + R"({"attributes":{},"extensions":{"TESSERA_shape":{"type":"plane"}}}]}]})";
+    };
+    write(R"({"attributes":{},"extensions":{"TESSERA_shape":{"type":"plane","size":[4,2]}}},)");
+    const Outcome run = run_command({"info", in_folder("s.gltf"), "--json"});
+    ASSERT_EQ(run.code, 0) << run.err;
+    simdjson::dom::parser parser;
+    const simdjson::dom::element json = parser.parse(run.out);
+    EXPECT_EQ(std::uint64_t(json["counts"]["primitives"]), 2u);
+    EXPECT_EQ(std::uint64_t(json["counts"]["shapes"]), 2u);
+    EXPECT_EQ(double(json["bounds"]["max"].at(0)), 2);  // not those of the plane without end
+    EXPECT_NE(run_command({"info", in_folder("s.gltf")}).out.find("1 with 2 primitives, 2 of them shapes\n"),
+              std::string::npos);
+    write("");
+    const Outcome endless = run_command({"info", in_folder("s.gltf"), "--json"});
+    EXPECT_NE(endless.out.find("\"bounds\": null"), std::string::npos) << endless.out;
+    EXPECT_NE(run_command({"info", in_folder("s.gltf")}).out.find("bounds        none\n"), std::string::npos);
+}
+
 TEST_F(Cli, InfoCountsTheHierarchyScene) {
     const Outcome run = run_command({"info", scene("hierarchy.gltf"), "--json"});
     ASSERT_EQ(run.code, 0) << run.err;
