@@ -10,7 +10,8 @@ namespace tessera {
 
 struct TileTask;
 
-// Samples to shade: a triangle seen at a picture position each.
+// Samples to shade: a triangle seen at a picture position each. Their arrays may be read kMaxLanes beyond the last,
+// whose ordinal is repeated.
 struct SampleList {
     const std::int32_t *x, *y;     // 1/256 pixel
     const std::uint32_t* ordinal;  // of the tile's triangles, from 1

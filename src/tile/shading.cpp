@@ -3,8 +3,19 @@
 
 #include <algorithm>
 #include <bit>
+#include <cstring>
 
 namespace tessera {
+namespace {
+
+// The squares that list_opaque() goes by.
+constexpr std::uint32_t kSquare = 4, kSquarePixels = kSquare * kSquare;
+constexpr std::uint32_t kSquareEnd = (kSquare - 1) * kBlockSide + kSquare - 1;  // from its first pixel to its last
+constexpr std::uint64_t kSquareBits = 0x0f0f0f0f;
+constexpr std::uint32_t kPlaces[kSquarePixels] = {0, 1, 2, 3, 8, 9, 10, 11, 16, 17, 18, 19, 24, 25, 26, 27};
+static_assert(kBlockSide == 8);
+
+}  // namespace
 
 // The ordinals that need a surface record, in order, to list_, with 0 at the end; their count.
 std::uint32_t Tile::list_visible() {
@@ -122,36 +133,70 @@ void Tile::shade_opaque(SamplePosition offset, bool first, Planes& planes) {
         task_->kernels.shade_tile(job);
         return;
     }
-    if (first)
-        for (std::vector<float>& plane : planes) std::fill(plane.begin(), plane.end(), 0.0f);
     list_opaque();
     shade_list(offset, shader_.get());
-    for (std::size_t i = 0; i < point_pixel_.size(); ++i) {
+    const bool full = point_pixel_.size() == visible_.ordinal.size();
+    if (first && !full)
+        for (std::vector<float>& plane : planes) std::fill(plane.begin(), plane.end(), 0.0f);
+    add_points(first && full, planes);
+}
+
+// Adds the colours of what list_opaque() listed, or stores them; squares of which all is listed row by row.
+void Tile::add_points(bool first, Planes& planes) {
+    const auto count = static_cast<std::uint32_t>(point_pixel_.size());
+    for (std::uint32_t i = 0; i < count;) {
         const std::uint32_t pixel = point_pixel_[i];
+        std::uint64_t& hit = hit_[pixel / kBlockPixels];
+        const bool corner = pixel % kSquare == 0 && pixel / kBlockSide % kSquare == 0;
+        if (corner && i + kSquarePixels <= count && point_pixel_[i + kSquarePixels - 1] == pixel + kSquareEnd) {
+            for (std::size_t c = 0; c < 4; ++c) {
+                float* __restrict to = planes[c].data() + pixel;
+                const float* __restrict from = point_color_[c].data() + i;
+                for (std::uint32_t row = 0; row < kSquare; ++row, to += kBlockSide, from += kSquare) {
+                    if (first)
+                        std::memcpy(to, from, kSquare * sizeof *to);
+                    else
+                        for (std::uint32_t k = 0; k < kSquare; ++k) to[k] += from[k];
+                }
+            }
+            hit |= kSquareBits << pixel % kBlockPixels;
+            i += kSquarePixels;
+            continue;
+        }
         for (std::size_t c = 0; c < 4; ++c) planes[c][pixel] += point_color_[c][i];
-        hit_[pixel / kBlockPixels] |= std::uint64_t{1} << pixel % kBlockPixels;
+        hit |= std::uint64_t{1} << pixel % kBlockPixels;
+        ++i;
     }
 }
 
 // All pixels that show something opaque, by squares of 4x4: packets of rays should be square.
 void Tile::list_opaque() {
-    constexpr int kSquare = 4;
     point_pixel_.resize(visible_.ordinal.size());
     point_ordinal_.resize(visible_.ordinal.size());
     std::uint32_t* const pixels = point_pixel_.data();
     std::uint32_t* const ordinals = point_ordinal_.data();
     std::size_t count = 0;
-    for (std::uint32_t block = 0; block < visible_.ordinal.size(); block += kBlockPixels)
-        for (int corner = 0; corner < kBlockSide * kBlockSide; corner += kSquare * kBlockSide)
-            for (int column = 0; column < kBlockSide; column += kSquare)
-                for (int i = 0; i < kSquare * kSquare; ++i) {
-                    const auto pixel =
-                        block + static_cast<std::uint32_t>(corner + i / kSquare * kBlockSide + column + i % kSquare);
-                    const std::uint32_t ordinal = visible_.ordinal[pixel];
-                    pixels[count] = pixel;
-                    ordinals[count] = ordinal;
-                    count += ordinal != 0;
-                }
+    for (std::uint32_t corner = 0; corner < visible_.ordinal.size();) {
+        const std::uint32_t* const seen = visible_.ordinal.data() + corner;
+        std::uint32_t *const to = ordinals + count, *const where = pixels + count;
+        for (std::uint32_t row = 0; row < kSquare; ++row)
+            std::memcpy(to + row * kSquare, seen + row * kBlockSide, kSquare * sizeof *to);
+        for (std::uint32_t i = 0; i < kSquarePixels; ++i) where[i] = corner + kPlaces[i];
+        std::uint32_t missing = 0;
+        for (std::uint32_t i = 0; i < kSquarePixels; ++i) missing += to[i] == 0;
+        if (missing == 0) {
+            count += kSquarePixels;
+        } else if (missing < kSquarePixels) {
+            const std::size_t end = count + kSquarePixels;
+            for (std::size_t i = count; i < end; ++i) {
+                pixels[count] = pixels[i];
+                ordinals[count] = ordinals[i];
+                count += ordinals[i] != 0;
+            }
+        }
+        // The square to the right, or the first one of the next row of squares.
+        corner += corner / kSquare % 2 == 0 ? kSquare : kSquare * kBlockSide - kSquare;
+    }
     point_pixel_.resize(count);
     point_ordinal_.resize(count);
 }
@@ -163,6 +208,8 @@ void Tile::shade_list_traced(SamplePosition offset, PointShader& shader) {
     if (count == 0) return;
     batch_x_.resize(count + kMaxLanes);
     batch_y_.resize(count + kMaxLanes);
+    const std::uint32_t last = point_ordinal_.back();
+    point_ordinal_.resize(count + kMaxLanes, last);
     const auto columns = static_cast<std::uint32_t>(area_.side / kBlockSide);  // a power of two
     const int shift = std::countr_zero(columns);
     for (std::size_t i = 0; i < count; ++i) {
@@ -184,6 +231,7 @@ void Tile::shade_list_traced(SamplePosition offset, PointShader& shader) {
     samples.record_of = record_of_.data();
     shader.shade(*task_, samples,
                  {point_color_[0].data(), point_color_[1].data(), point_color_[2].data(), point_color_[3].data()});
+    point_ordinal_.resize(count);
 }
 
 // Shades point_ordinal_ at point_pixel_ into point_color_, in batches of one material and layout.

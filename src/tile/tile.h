@@ -60,6 +60,7 @@ class Tile {
     void take_sample(SamplePosition offset, bool first);
     void shade_opaque(SamplePosition offset, bool first, Planes& planes);
     void list_opaque();
+    void add_points(bool first, Planes& planes);
     void shade_list(SamplePosition offset, PointShader* shader);
     void shade_list_traced(SamplePosition offset, PointShader& shader);
     void compose_fragments(SamplePosition offset);

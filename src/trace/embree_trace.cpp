@@ -253,6 +253,42 @@ static void name_hit(const Impl& impl, RayPacket<W>& r, int i, const Impl::Slot&
     r.instance[i] = slot.instance;
 }
 
+// Names the hits of a packet where all are on one geometry and stand, as most do: all lanes at a time. False where that
+// is not so.
+template <int W>
+static bool name_hits_on_one(const Impl& impl, const Lanes<W>& lanes, RayPacket<W>& r, std::uint32_t checks) {
+    std::uint32_t hit[W];  // all ones, or 0
+    for (int i = 0; i < W; ++i)
+        hit[i] = static_cast<std::uint32_t>(lanes.on[i] & -static_cast<int>(r.geometry[i] != kNoHit));
+    int first = 0;
+    while (first < W && !hit[first]) ++first;
+    if (first == W) return true;
+    const std::uint32_t geometry = r.geometry[first], instance = r.instance[first];
+    std::uint32_t others = 0;
+    for (int i = 0; i < W; ++i) others |= hit[i] & ((r.geometry[i] ^ geometry) | (r.instance[i] ^ instance));
+    if (others) return false;
+    const Impl::Slot& slot = impl.slot(instance, geometry);
+    checks &= slot.checks;
+    if (slot.sphere || (checks & Impl::kUndecided)) return false;
+    if (checks) {
+        constexpr float kSame[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
+        const bool moved = impl.top && impl.placements[instance].kind != GroupKind::kBaked;
+        const float* const m = moved ? impl.placements[instance].camera_to_object : kSame;
+        std::uint32_t back = 0;
+        for (int i = 0; i < W; ++i) {
+            const Vec3T<float> d = transform_direction(m, Vec3T<float>{r.dir_x[i], r.dir_y[i], r.dir_z[i]});
+            const float along = r.ng_x[i] * d.x + r.ng_y[i] * d.y + r.ng_z[i] * d.z;
+            back |= hit[i] & ~(0u - static_cast<std::uint32_t>(slot.front * along < 0.0f));
+        }
+        if (back) return false;
+    }
+    if (slot.triangle_numbers)
+        for (int i = 0; i < W; ++i)
+            if (hit[i]) r.triangle[i] = slot.triangle_numbers[r.triangle[i]];
+    for (int i = 0; i < W; ++i) r.instance[i] = (slot.instance & hit[i]) | (r.instance[i] & ~hit[i]);
+    return true;
+}
+
 template <int W>
 void EmbreeScene::nearest(const int* valid, RayPacket<W>& rays, bool coherent, bool from_camera,
                           std::vector<SheerHit>* sheer, bool checked) const {
@@ -272,6 +308,7 @@ void EmbreeScene::nearest(const int* valid, RayPacket<W>& rays, bool coherent, b
     float t_far[W];
     if (check) std::copy_n(rays.t_far, W, t_far);
     intersect(lanes, rays, context);
+    if (name_hits_on_one(impl, lanes, rays, context.checks)) return;
 
     // Most hits are on the front of something solid and stand. The rest is traced once more, now with the filter,
     // which all hits would otherwise have to go through.

@@ -42,9 +42,20 @@ void WaveShader::find_light(Wave& wave) {
                 {shadow_rays_, scene_->scene->trace_from_camera(), first, job.made, job.t_far, &shadow_packet_});
             scene_->scene->occluded(valid, packet, true, true);
             float* const arrived = arrives + static_cast<std::size_t>(light * arrival_.channels) * arrival_.stride;
-            if (colored) attenuate(packet, valid, first, arrived, wave);
+            if (colored) {
+                attenuate(packet, valid, first, arrived, wave);
+                continue;
+            }
+            const std::uint32_t* const point = shadow_point_.data() + first;
+            if (first + kPacketWidth <= job.made && point[kPacketWidth - 1] - point[0] == kPacketWidth - 1) {
+                // Points rise, so these follow each other.
+                float* const to = arrived + point[0];
+                for (std::uint32_t lane = 0; lane < kPacketWidth; ++lane)
+                    to[lane] = packet.t_far[lane] < 0.0f ? 0.0f : 1.0f;
+                continue;
+            }
             for (std::uint32_t lane = 0; lane < kPacketWidth && first + lane < job.made; ++lane)
-                if (!colored) arrived[shadow_point_[first + lane]] = packet.t_far[lane] < 0.0f ? 0.0f : 1.0f;
+                arrived[point[lane]] = packet.t_far[lane] < 0.0f ? 0.0f : 1.0f;
         }
     }
 }

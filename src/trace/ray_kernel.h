@@ -60,6 +60,33 @@ inline void primary_rays(const PrimaryRaysJob& job) {
     }
 }
 
+inline void find_hits(const WavePacket& packet, PacketHits& hits) {
+    constexpr int kWidth = kLanes<Float>, kParts = kPacketWidth / kWidth;
+    Uint triangle[kParts], instance[kParts], which[kParts];
+    Mask hit[kParts];
+    std::uint32_t rest = 0;
+    for (int part = 0; part < kParts; ++part) {
+        triangle[part] = load<Uint>(packet.rays.triangle + part * kWidth);
+        instance[part] = load<Uint>(packet.rays.instance + part * kWidth);
+        which[part] = Uint(0u);
+        hit[part] = (load<Int>(packet.valid + part * kWidth) != Int(0)) & (instance[part] != Uint(kNoHit));
+        rest |= mask_bits(hit[part]) << part * kWidth;
+    }
+    hits.rays = static_cast<std::uint32_t>(__builtin_popcount(rest));
+    hits.count = 0;
+    while (rest) {
+        const int lane = __builtin_ctz(rest);
+        hits.lane[hits.count++] = static_cast<std::uint32_t>(lane);
+        const Uint t(packet.rays.triangle[lane]), i(packet.rays.instance[lane]), number(hits.count);
+        for (int part = 0; part < kParts; ++part) {
+            const Mask same = hit[part] & (triangle[part] == t) & (instance[part] == i);
+            rest &= ~(mask_bits(same) << part * kWidth);
+            which[part] = select(same, number, which[part]);
+        }
+    }
+    for (int part = 0; part < kParts; ++part) store(hits.which + part * kWidth, which[part]);
+}
+
 inline void pack(const PackJob& job) {
     constexpr float kFar = 3e38f;  // beyond any scene
     for (int lane = 0; lane < kPacketWidth; lane += kLanes<Float>) {

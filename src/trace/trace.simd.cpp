@@ -7,9 +7,9 @@ namespace tessera::TESSERA_ISA_NAMESPACE {
 void shade_traced_points(const TracedShadeJob& job);
 
 const TraceKernels& trace_kernels() {
-    static constexpr TraceKernels kKernels{&primary_rays, &pack,           &flat_planes, &primary_surfaces,
-                                           &ray_surfaces, &shape_surfaces, &shadow_rays, &shade_traced_points,
-                                           &spawn};
+    static constexpr TraceKernels kKernels{&primary_rays,        &find_hits,    &pack,           &flat_planes,
+                                           &primary_surfaces,    &ray_surfaces, &shape_surfaces, &shadow_rays,
+                                           &shade_traced_points, &spawn};
     return kKernels;
 }
 

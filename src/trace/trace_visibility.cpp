@@ -122,12 +122,16 @@ void TraceVisibility::see_square(int x, int y, SamplePosition offset, VisibleTil
     const bool looks = source_->scene->has_undecided();
     sheer_.clear();
     source_->scene->nearest(packet_.valid, packet, true, true, looks ? &sheer_ : nullptr, true);
-    std::uint32_t* const first = tile.ordinal.data() + place(x, y);
-    for (int lane = 0; lane < kPacketWidth; ++lane) {
-        if (!packet_.valid[lane] || packet.instance[lane] == kNoHit) continue;
-        ++hits;
-        first[lane / kSquare * kBlockSide + lane % kSquare] =
-            ordinal_of(packet.instance[lane], packet.triangle[lane], tile);
+    PacketHits found;
+    source_->kernels->find_hits(packet_, found);
+    if (found.count > 0) {
+        std::uint32_t ordinals[kPacketWidth + 1] = {0};
+        for (std::uint32_t i = 0; i < found.count; ++i)
+            ordinals[i + 1] = ordinal_of(packet.instance[found.lane[i]], packet.triangle[found.lane[i]], tile);
+        hits += found.rays;
+        std::uint32_t* const first = tile.ordinal.data() + place(x, y);
+        for (int lane = 0; lane < kPacketWidth; ++lane)
+            first[lane / kSquare * kBlockSide + lane % kSquare] = ordinals[found.which[lane]];
     }
     if (!sheer_.empty()) see_sheer(x, y, offset, tile);
 }

@@ -44,16 +44,17 @@ void WaveShader::see_sheer(Wave& wave, std::uint32_t first, const RayPacket<kPac
     }
 }
 
-// The points of one instance that is drawn by its formula.
-void WaveShader::find_shape_points(const TileTask& task, Wave& wave, const InstanceRun& run, bool camera) const {
+// The points of one instance that is drawn by its formula; `x` and `y`: picture positions of the camera's rays.
+void WaveShader::find_shape_points(const TileTask& task, Wave& wave, const InstanceRun& run, const std::int32_t* x,
+                                   const std::int32_t* y) const {
     ShapeSurfacesJob job{};
     job.instance = &task.frame.instances[run.instance];
     job.material = &scene_->shading->materials[job.instance->material];
     job.layout = task.shading_batches.layouts[run.instance];
     job.projection = &task.frame.projection;
-    if (camera) {
-        job.x = x_.data() + run.first;
-        job.y = y_.data() + run.first;
+    if (x) {
+        job.x = x + run.first;
+        job.y = y + run.first;
     } else {
         job.rays = wave.rays;
         job.ray = wave.ray.data() + run.first;
@@ -95,7 +96,7 @@ void WaveShader::trace(const TileTask& task, Wave& wave, bool coherent) {
     arrange(task, wave);
     for (const InstanceRun& run : wave.runs) {
         if (task.frame.instances[run.instance].shape) {
-            find_shape_points(task, wave, run, false);
+            find_shape_points(task, wave, run, nullptr, nullptr);
             continue;
         }
         RaySurfacesJob job{};

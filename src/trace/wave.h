@@ -31,6 +31,7 @@ struct InstanceRun {
 
 struct Wave {
     std::uint32_t ray_count = 0, point_count = 0;  // point_count: padding included
+    bool direct = false;  // points have the numbers of their rays: all of these hit one instance
 
     // By ray.
     WaveArrays rays;

@@ -98,6 +98,13 @@ struct PrimaryRaysJob {
     WavePacket* packet;
 };
 
+// The triangles that a packet's rays hit, each once, in the order of their first lanes.
+struct PacketHits {
+    std::uint32_t count, rays;                      // rays: that hit something
+    std::uint32_t lane[kPacketWidth];               // of each the first
+    alignas(64) std::uint32_t which[kPacketWidth];  // by lane: 1 + number of its triangle among them; 0: no hit
+};
+
 // Up to kPacketWidth rays of a wave, from `first` on.
 struct PackJob {
     WaveArrays rays;
@@ -212,6 +219,7 @@ struct SpawnJob {
 
 struct TraceKernels {
     void (*primary_rays)(const PrimaryRaysJob& job);
+    void (*find_hits)(const WavePacket& packet, PacketHits& hits);
     void (*pack)(const PackJob& job);
     void (*flat_planes)(const FlatPlanesJob& job);
     void (*primary_surfaces)(const PrimarySurfacesJob& job);

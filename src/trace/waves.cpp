@@ -81,19 +81,34 @@ void WaveShader::take_samples(const TileTask& task, const SampleList& samples, s
     Wave& wave = *waves_[0];
     wave.ray_count = count;
     wave.reserve_rays(count);
-    for (std::uint32_t i = 0; i < count; ++i) {
-        const TileTriangle& t = samples.triangles[samples.ordinal[first + i] - 1];
-        wave.instance[i] = t.instance;
-        wave.triangle[i] = t.triangle;
-    }
     if (!scene_->simple) wave.states.assign(count, RayState{});
-    arrange(task, wave);
-
-    std::int32_t *const x = x_.reserve(wave.point_count), *const y = y_.reserve(wave.point_count);
-    std::uint32_t* const ordinal = ordinal_.reserve(wave.point_count);
-    for (std::uint32_t p = 0; p < wave.point_count; ++p) {
-        const std::uint32_t from = first + wave.ray[p];
-        x[p] = samples.x[from], y[p] = samples.y[from], ordinal[p] = samples.ordinal[from];
+    // Triangles of one instance have ordinals that follow each other.
+    const std::uint32_t instance = samples.triangles[samples.seen[0] - 1].instance;
+    const bool one = instance == samples.triangles[samples.seen[samples.seen_count - 1] - 1].instance;
+    if (one) {
+        std::fill_n(wave.instance.data(), count, instance);
+        if (task.frame.instances[instance].shape)  // else nobody asks
+            for (std::uint32_t i = 0; i < count; ++i)
+                wave.triangle[i] = samples.triangles[samples.ordinal[first + i] - 1].triangle;
+        arrange_one(wave, instance);
+    } else {
+        for (std::uint32_t i = 0; i < count; ++i) {
+            const TileTriangle& t = samples.triangles[samples.ordinal[first + i] - 1];
+            wave.instance[i] = t.instance;
+            wave.triangle[i] = t.triangle;
+        }
+        arrange(task, wave);
+    }
+    const std::int32_t *x = samples.x + first, *y = samples.y + first;
+    const std::uint32_t* ordinal = samples.ordinal + first;
+    if (!one) {
+        std::int32_t *const own_x = x_.reserve(wave.point_count), *const own_y = y_.reserve(wave.point_count);
+        std::uint32_t* const own_ordinal = ordinal_.reserve(wave.point_count);
+        for (std::uint32_t p = 0; p < wave.point_count; ++p) {
+            const std::uint32_t from = wave.ray[p];
+            own_x[p] = x[from], own_y[p] = y[from], own_ordinal[p] = ordinal[from];
+        }
+        x = own_x, y = own_y, ordinal = own_ordinal;
     }
     std::fill_n(wave.points[kTimes], wave.point_count, 1.0f);
     const ProjectionView& picture = task.frame.projection;
@@ -105,7 +120,7 @@ void WaveShader::take_samples(const TileTask& task, const SampleList& samples, s
             std::fill_n(wave.points[kRounding] + run->first, run->count + kMaxLanes,
                         scene_->instance_size[run->instance]);
         if (task.frame.instances[b.instance].shape) {
-            for (auto r = first_run; r != run; ++r) find_shape_points(task, wave, *r, true);
+            for (auto r = first_run; r != run; ++r) find_shape_points(task, wave, *r, x, y);
             continue;
         }
         PrimarySurfacesJob job{};
@@ -116,9 +131,9 @@ void WaveShader::take_samples(const TileTask& task, const SampleList& samples, s
         job.record_of = samples.record_of;
         job.planes = planes_.data();
         job.plane_of = plane_of_.data();
-        job.x = x_.data() + b.first;
-        job.y = y_.data() + b.first;
-        job.list = ordinal_.data() + b.first;
+        job.x = x + b.first;
+        job.y = y + b.first;
+        job.list = ordinal + b.first;
         job.count = b.count;
         job.first = b.first;
         job.width_at_one = picture.orthographic ? 0.0f : pixel;
@@ -145,11 +160,16 @@ void WaveShader::shade_points(const TileTask& task, Wave& wave, bool camera) {
         scene_->kernels->shade(job);
     }
     if (!scene_->simple) choose_rays(task, wave, camera);
-    for (int c = 0; c < 3; ++c) {
-        const float* const radiance = wave.shades[kRadianceR + c];
-        float* const light = wave.light[c].data();
+    const float* const radiance[3] = {wave.shades[kRadianceR], wave.shades[kRadianceG], wave.shades[kRadianceB]};
+    if (wave.direct) {
+        for (std::size_t c = 0; c < 3; ++c) std::copy_n(radiance[c], wave.ray_count, wave.light[c].data());
+    } else {
+        float* const light[3] = {wave.light[0].data(), wave.light[1].data(), wave.light[2].data()};
         for (const PointBatch& b : wave.batches)  // without what pads them
-            for (std::uint32_t p = b.first; p < b.first + b.count; ++p) light[wave.ray[p]] = radiance[p];
+            for (std::uint32_t p = b.first; p < b.first + b.count; ++p) {
+                const std::uint32_t ray = wave.ray[p];
+                light[0][ray] = radiance[0][p], light[1][ray] = radiance[1][p], light[2][ray] = radiance[2][p];
+            }
     }
     if (scene_->simple) return;
     for (Buffer<float>& passed : wave.passed)
@@ -218,14 +238,20 @@ void WaveShader::count_ended(SpawnJob job, const std::uint32_t* used, std::initi
 
 // What came along the rays of a wave, to the points that they left: in their order, so mirrored light first.
 void WaveShader::gather(const Wave& from, Wave& to) const {
+    if (scene_->simple) {
+        const float *const wr = from.rays[kWeightR], *const wg = from.rays[kWeightG], *const wb = from.rays[kWeightB];
+        const float *const r = from.light[0].data(), *const g = from.light[1].data(), *const b = from.light[2].data();
+        float *const sum_r = to.light[0].data(), *const sum_g = to.light[1].data(), *const sum_b = to.light[2].data();
+        for (std::uint32_t i = 0; i < from.ray_count; ++i) {
+            const std::uint32_t point = point_of(from, i), ray = to.direct ? point : to.ray[point];
+            sum_r[ray] += wr[i] * r[i], sum_g[ray] += wg[i] * g[i], sum_b[ray] += wb[i] * b[i];
+        }
+        return;
+    }
     for (std::size_t c = 0; c < 3; ++c) {
         const float* const weight = from.rays[kWeightR + static_cast<int>(c)];
         const float* const light = from.light[c].data();
         float* const sum = to.light[c].data();
-        if (scene_->simple) {
-            for (std::uint32_t r = 0; r < from.ray_count; ++r) sum[to.ray[point_of(from, r)]] += weight[r] * light[r];
-            continue;
-        }
         for (std::uint32_t r = 0; r < from.ray_count; ++r) {
             const std::uint32_t ray = to.ray[point_of(from, r)];
             sum[ray] += weight[r] * (light[r] * from.kept[c][r]);
