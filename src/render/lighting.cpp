@@ -48,16 +48,15 @@ struct MeterPoint {
 };
 
 // Adds `count` points spread over one triangle that lie within the picture.
-void meter_triangle(const Frame& frame, const ShadingContext& context, std::uint32_t number, int count,
-                    TriangleSetup& setup, std::vector<MeterPoint>& points) {
-    const InstanceView& instance = frame.instance_of(number);
-    setup_triangle(instance, number - instance.first_triangle, frame.projection, setup);
+void meter_triangle(const Frame& frame, const ShadingContext& context, const InstanceView& instance,
+                    std::uint32_t triangle, int count, TriangleSetup& setup, std::vector<MeterPoint>& points) {
+    setup_triangle(instance, triangle, frame.projection, setup);
     if (!setup.visible()) return;
     const bool front = setup.front(instance);
     if (!front && !context.materials[instance.material].double_sided) return;
     Vec3T<float> p[3];
     for (int i = 0; i < 3; ++i) {
-        const std::uint32_t v = instance.mesh.triangles[3 * std::size_t{number - instance.first_triangle} + i];
+        const std::uint32_t v = instance.mesh.triangles[3 * std::size_t{triangle} + i];
         p[i] = transform_point(instance.object_to_camera,
                                Vec3T<float>::load(instance.mesh.positions + 3 * std::size_t{v}));
     }
@@ -122,22 +121,27 @@ AmbientView uniform_ambient(Vec3 radiance) {
 
 double metered_exposure(const Frame& frame, const ShadingContext& context) {
     // Points and lines say little of the light, and count only where there is nothing else.
-    std::uint32_t count = 0;
-    for (const InstanceView& i : frame.instances) count += i.mesh.is_stroke() ? 0 : i.mesh.triangle_count;
+    // Shapes count by their triangles, however they are drawn.
+    const auto triangles_of = [&](std::size_t i) { return frame.prepared[i]->view.triangle_count; };
+    std::uint32_t count = 0, all = 0;
+    for (std::size_t i = 0; i < frame.instances.size(); ++i) {
+        count += frame.instances[i].mesh.is_stroke() ? 0 : triangles_of(i);
+        all += triangles_of(i);
+    }
     const bool strokes = count == 0;
-    if (strokes) count = frame.triangle_count;
+    if (strokes) count = all;
     if (count == 0) return 1.0;
     const std::uint32_t step = (count + kMeterPoints - 1) / kMeterPoints;
     const int per_triangle = static_cast<int>(std::clamp(kMeterPoints / count, 1u, 64u));
     std::vector<MeterPoint> points;
     TriangleSetup setup;
     std::uint64_t next = step / 2, passed_by = 0;
-    for (const InstanceView& i : frame.instances) {
-        if (i.mesh.is_stroke() && !strokes) continue;
-        for (; next < passed_by + i.mesh.triangle_count; next += step)
-            meter_triangle(frame, context, i.first_triangle + static_cast<std::uint32_t>(next - passed_by),
+    for (std::size_t i = 0; i < frame.instances.size(); ++i) {
+        if (frame.instances[i].mesh.is_stroke() && !strokes) continue;
+        for (; next < passed_by + triangles_of(i); next += step)
+            meter_triangle(frame, context, frame.instances[i], static_cast<std::uint32_t>(next - passed_by),
                            per_triangle, setup, points);
-        passed_by += i.mesh.triangle_count;
+        passed_by += triangles_of(i);
     }
     if (points.empty()) return 1.0;
     std::stable_sort(points.begin(), points.end(),
