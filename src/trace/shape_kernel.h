@@ -23,16 +23,13 @@ inline void shape_surfaces(const ShapeSurfacesJob& job) {
             name[lane] = job.name[n];
             ray[lane] = camera ? 0 : static_cast<std::int32_t>(job.ray[n]);
         }
-        const Int from = load<Int>(ray);
-        const auto number = [&](int n) { return gather(job.rays[n], from); };
+        const RayNumbers number(job.rays, ray);
         ConeRay<Float> cone;
         if (camera)
             cone =
                 picture_ray(*job.projection, picture, to_float(load<Int>(job.x + i)), to_float(load<Int>(job.y + i)));
         else
-            cone = {{number(kOriginX), number(kOriginY), number(kOriginZ)},
-                    {number(kDirectionX), number(kDirectionY), number(kDirectionZ)},
-                    number(kConeWidth)};
+            cone = number.cone();
         RaySurface<Float> hit =
             shape_surface(instance, cone, load<Uint>(name) == Uint(kLeavingSphere), job.spread, job.footprint_scale);
         SurfacePoint<Float>& s = hit.point;

@@ -91,6 +91,30 @@ inline void primary_surfaces(const PrimarySurfacesJob& job) {
     primary_surfaces_as<AnyLayout>(job);
 }
 
+// Numbers of the rays that a vector of points belongs to, which mostly follow each other.
+class RayNumbers {
+  public:
+    TESSERA_INLINE RayNumbers(const WaveArrays& rays, const std::int32_t* ray)
+        : rays_(rays), from_(load<Int>(ray)), first_(ray[0]) {
+        follow_ = mask_bits(from_ != iota<Int>() + Int(first_)) == 0;
+    }
+    TESSERA_INLINE Float operator()(int n) const {
+        return follow_ ? load<Float>(rays_[n] + first_) : gather(rays_[n], from_);
+    }
+    TESSERA_INLINE ConeRay<Float> cone() const {
+        const auto& number = *this;
+        return {{number(kOriginX), number(kOriginY), number(kOriginZ)},
+                {number(kDirectionX), number(kDirectionY), number(kDirectionZ)},
+                number(kConeWidth)};
+    }
+
+  private:
+    WaveArrays rays_;
+    Int from_;
+    std::int32_t first_;
+    bool follow_;
+};
+
 // Asks for what the hits from `first` on will be made of, which is seldom in a cache: indices two vectors ahead,
 // vertices one.
 TESSERA_INLINE void prefetch_hits(const RaySurfacesJob& job, const MeshView& mesh, std::uint32_t first) {
@@ -129,11 +153,8 @@ inline void ray_surfaces_as(const RaySurfacesJob& job) {
             arrays.load_corner(layout, vertices[k], c[k]);
             if (layout.depth < 0) arrays.load_position(vertices[k], c[k].position);
         }
-        const Int from = load<Int>(ray);
-        const auto number = [&](int n) { return gather(job.rays[n], from); };
-        const ConeRay<Float> cone{{number(kOriginX), number(kOriginY), number(kOriginZ)},
-                                  {number(kDirectionX), number(kDirectionY), number(kDirectionZ)},
-                                  number(kConeWidth)};
+        const RayNumbers number(job.rays, ray);
+        const ConeRay<Float> cone = number.cone();
         RaySurface<Float> hit = ray_surface(instance, c, cone, job.spread, job.footprint_scale);
         if (layout.tangent >= 0) hit.point.normal = shading_normal(material, hit.point);
         const std::uint32_t at = job.first + i;

@@ -16,6 +16,7 @@ std::size_t slot_of(std::uint32_t number, std::size_t slots) {
 
 void TraceVisibility::begin(const TraceSource& source) {
     source_ = &source;
+    rays_.emplace(source.frame->projection);
     surface_.emplace(*source.frame, *source.shading);
     sheer_surface_.emplace(*source.frame, *source.shading);
     rays = hits = 0;
@@ -115,8 +116,8 @@ void TraceVisibility::see_square(int x, int y, SamplePosition offset, VisibleTil
     RayPacket<kPacketWidth>& packet = packet_.rays;
     const int columns = std::min(kSquare, area_.width - x), rows = std::min(kSquare, area_.height - y);
     const PrimaryRaysJob job{
-        PictureRays(projection), source_->scene->trace_from_camera(), area_.x0 + x, area_.y0 + y, offset, columns, rows,
-        projection.near,         distance_of_depth(projection, 0.0f), &packet_};
+        *rays_,          source_->scene->trace_from_camera(), area_.x0 + x, area_.y0 + y, offset, columns, rows,
+        projection.near, distance_of_depth(projection, 0.0f), &packet_};
     source_->kernels->primary_rays(job);
     rays += static_cast<std::uint64_t>(columns * rows);
     const bool looks = source_->scene->has_undecided();

@@ -48,6 +48,7 @@ class TraceVisibility final : public TileVisibility {
     }
 
     const TraceSource* source_ = nullptr;
+    std::optional<PictureRays> rays_;
     std::optional<SheerSurface> surface_, sheer_surface_;
     TileArea area_{};
     struct Slot {
