@@ -4,9 +4,10 @@
 // A line of JSON each: medians in milliseconds, the median of the ratios of pairs by wall and by processor time, and of
 // ours the search for duplicate triangles. `build` and `refit` have the arrays that bare Embree has; `build_flat` has
 // three vertices a triangle, as meshes without normals are drawn. Exit code 3 when a hierarchy was not made as asked.
+#include "traced_meshes.h"
+
 #include "bench/peers/embree_builds.h"
 #include "trace/duplicates.h"
-#include "trace/embree_scene.h"
 
 #include <CLI/App.hpp>
 #include <CLI/Config.hpp>
@@ -17,64 +18,12 @@
 namespace {
 
 using namespace tessera;
+using namespace tessera::bench;
 using peers::Mesh;
-
-constexpr std::uint64_t kPlenty = std::uint64_t{1} << 36;
 
 struct Options {
     std::vector<std::string> scenes{"sphere100k", "hf100k", "hf1m"};
     int threads = 1, repeats = 7;
-};
-
-Vec3 as_vec3(const glm::vec3& v) { return {v.x, v.y, v.z}; }
-
-Primitive primitive_of(const Mesh& mesh, bool flat) {
-    Primitive p;
-    if (flat) {
-        for (const std::uint32_t i : mesh.indices) p.positions.push_back(as_vec3(mesh.positions[i]));
-    } else {
-        for (const glm::vec3& v : mesh.positions) p.positions.push_back(as_vec3(v));
-        p.indices = mesh.indices;
-    }
-    p.normals.assign(p.positions.size(), {0, 1, 0});
-    return p;
-}
-
-// A mesh as the renderer prepares it; not to be moved.
-struct Prepared {
-    Prepared(const Mesh& of, bool flat, bool deformed) : primitive(primitive_of(of, flat)), mesh({}, primitive) {
-        mesh.deformed = deformed;
-    }
-    TriangleSet triangles() const {
-        const MeshView& v = mesh.view;
-        return {v.positions, v.triangles, v.vertex_count, v.triangle_count, 3, 3};
-    }
-
-    Primitive primitive;
-    PreparedMesh mesh;
-};
-
-// Opaque, two-sided instances in camera space.
-struct Traced {
-    Traced(std::initializer_list<const Mesh*> sources, bool flat, bool deformed) {
-        for (const Mesh* source : sources) {
-            if (source->triangles() == 0) continue;
-            meshes.push_back(std::make_unique<Prepared>(*source, flat, deformed));
-            InstanceView instance{};
-            instance.mesh = meshes.back()->mesh.view;
-            for (int i = 0; i < 3; ++i) instance.object_to_camera[5 * i] = 1;
-            instance.handedness = 1;
-            instance.first_triangle = frame.triangle_count;
-            frame.triangle_count += instance.mesh.triangle_count;
-            frame.instances.push_back(instance);
-            frame.prepared.push_back(&meshes.back()->mesh);
-            classes.emplace_back();
-        }
-    }
-
-    std::vector<std::unique_ptr<Prepared>> meshes;
-    Frame frame;
-    std::vector<TraceClass> classes;
 };
 
 template <class Run>
@@ -83,13 +32,19 @@ peers::Times time_of(const Run& run) {
         1, [] {}, run);
 }
 
+// Seen from both sides.
+TriangleSet triangles_of(const TracedMesh& m) {
+    const MeshView& v = m.mesh.view;
+    return {v.positions, v.triangles, v.vertex_count, v.triangle_count, 3, 3};
+}
+
 class Pairs {
   public:
     Pairs(const Options& options, const peers::Device& device)
         : options_(options), device_(device), arena_(options.threads), ours_(best_isa(), kPlenty), bare_(device) {}
 
     bool build(const peers::Scene& scene, bool flat) {
-        const Traced traced({&scene.mesh, &scene.ground}, flat, false);
+        const TracedMeshes traced({&scene.mesh, &scene.ground}, flat, false);
         const auto clear = [&] {
             ours_.update(Frame{}, {}, arena_);
             bare_.release();
@@ -105,7 +60,7 @@ class Pairs {
     }
 
     bool refit(const peers::Scene& scene) {
-        Traced traced({&scene.mesh}, false, true);
+        TracedMeshes traced({&scene.mesh}, false, true);
         Mesh moved = scene.mesh;
         peers::pad_vertices(moved);
         std::vector<Vec3>& positions = traced.meshes[0]->primitive.positions;
@@ -149,9 +104,9 @@ class Pairs {
         }
     }
 
-    void print(const peers::Scene& scene, const char* what, const Traced& traced, bool fine) {
+    void print(const peers::Scene& scene, const char* what, const TracedMeshes& traced, bool fine) {
         std::vector<TriangleSet> sets;
-        for (const auto& mesh : traced.meshes) sets.push_back(mesh->triangles());
+        for (const auto& mesh : traced.meshes) sets.push_back(triangles_of(*mesh));
         const peers::Times duplicates = peers::measure(
             options_.repeats, [] {}, [&] { find_duplicates(sets, arena_); });
         const double ms = peers::median(ours_ms_), bare_ms = peers::median(bare_ms_);
