@@ -52,7 +52,9 @@ struct OurPackets {
         for (int first = 0; first < count; first += W) {
             if (used == all.size()) all.emplace_back();
             Packet& p = all[used++];
-            const auto copy = [first](float* to, const float* from) { std::memcpy(to, from + first, 4 * W); };
+            const auto copy = [first](float* to, const float* from) {
+                std::memcpy(to, from + first, W * sizeof(float));
+            };
             RayPacket<W>& r = p.rays;
             copy(r.org_x, rays.org_x), copy(r.org_y, rays.org_y), copy(r.org_z, rays.org_z);
             copy(r.dir_x, rays.dir_x), copy(r.dir_y, rays.dir_y), copy(r.dir_z, rays.dir_z);
@@ -108,7 +110,7 @@ struct BarePackets {
     }
     void trace(Kind kind, bool coherent) {
         RTCIntersectContext context = peers::make_context(coherent);
-        const RTCScene scene = Scenes::get().bare.scene();
+        RTCScene scene = Scenes::get().bare.scene();
         for (std::size_t n = 0; n < used; ++n) {
             Packet& p = all[n];
             if (kind == Kind::kShadow)
@@ -147,7 +149,7 @@ struct BarePackets<1> {
     }
     void trace(Kind kind, bool coherent) {
         RTCIntersectContext context = peers::make_context(coherent);
-        const RTCScene scene = Scenes::get().bare.scene();
+        RTCScene scene = Scenes::get().bare.scene();
         for (std::size_t n = 0; n < used; ++n) {
             if (kind == Kind::kShadow)
                 rtcOccluded1(scene, &context, &all[n].ray);
@@ -181,18 +183,19 @@ void for_packs(Kind kind, const Body& body, const End& end) {
 // What single rays of bare Embree find.
 const peers::Totals& truth(Kind kind) {
     static std::map<Kind, peers::Totals> known;
-    const auto [found, fresh] = known.try_emplace(kind);
-    if (fresh) {
+    const auto entry = known.try_emplace(kind);
+    peers::Totals& sum = entry.first->second;
+    if (entry.second) {
         BarePackets<1> singles;
         for_packs(
             kind, [&](const peers::RayTile& rays, int count) { singles.add(rays, count); },
             [&](int) {
                 singles.trace(kind, false);
-                singles.tally(kind, found->second);
+                singles.tally(kind, sum);
                 singles.used = 0;
             });
     }
-    return found->second;
+    return sum;
 }
 
 template <int W>

@@ -40,7 +40,7 @@ TraceWork primary_rays_work(const Place& place) {
     for (int n = 0; n < BenchWave::kPackets; ++n)
         jobs.push_back(state->wave.primary_rays(n, state->packets.all[static_cast<std::size_t>(n)]));
     TraceWork work{};
-    work.items = kRuns * kPacketWidth * jobs.size();
+    work.items = std::uint64_t{kRuns} * kPacketWidth * jobs.size();
     work.clear = [=] { state->packets.clear(); };
     work.run = [=](const TracingKernels& kernels) {
         return seconds_of_runs([&] {
