@@ -4,47 +4,10 @@
 //     tessera_raster_kernel_bench --benchmark_filter='^visibility/.*/(avx2|avx512)/'
 #include "raster_kernel_cases.h"
 
-#include "core/fp_environment.h"
-
-#include <benchmark/benchmark.h>
-
-#include <algorithm>
-#include <cstring>
-
 namespace {
 
 using namespace tessera;
 using namespace tessera::bench;
-
-bool same(const Bytes& a, const Bytes& b) {
-    return a.size() == b.size() && !a.empty() && std::memcmp(a.data(), b.data(), a.size()) == 0;
-}
-
-void count_items(benchmark::State& state, std::uint64_t items) {
-    state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(items));
-    state.counters["per_item"] = benchmark::Counter(
-        static_cast<double>(items), benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
-}
-
-void run_kernel(benchmark::State& state, const KernelCase& c, Isa isa) {
-    const FpEnvironment exact;
-    const KernelWork work = c.make();
-    const auto once = [&](Isa by) {
-        work.clear();
-        work.run(Kernels(by));
-        return work.output();
-    };
-    if (!same(once(Isa::kScalar), once(isa))) {
-        state.SkipWithError("the output is not the scalar kernel's");
-        return;
-    }
-    const Kernels kernels(isa);
-    for (auto _ : state) {
-        work.clear();
-        state.SetIterationTime(work.run(kernels));
-    }
-    count_items(state, work.items);
-}
 
 void run_stage(benchmark::State& state, const StageCase& c, Isa isa, int threads) {
     const FpEnvironment exact;
@@ -64,18 +27,9 @@ void run_stage(benchmark::State& state, const StageCase& c, Isa isa, int threads
 }  // namespace
 
 int main(int argc, char** argv) {
-    const auto for_each_isa = [](auto&& visit) {
-        for (const Isa isa : {Isa::kScalar, Isa::kSse4, Isa::kAvx2, Isa::kAvx512})
-            if (isa_supported(isa)) visit(isa);
-    };
-    for (const auto& cases : {front_end_cases(), visibility_cases(), surface_cases()})
-        for (const KernelCase& c : cases)
-            for_each_isa([&](Isa isa) {
-                benchmark::RegisterBenchmark((c.name + "/" + name(isa)).c_str(),
-                                             [=](benchmark::State& state) { run_kernel(state, c, isa); })
-                    ->UseManualTime()
-                    ->Unit(benchmark::kMicrosecond);
-            });
+    register_kernels(front_end_cases());
+    register_kernels(visibility_cases());
+    register_kernels(surface_cases());
     std::vector<int> threads{1};
     if (available_threads() > 1) threads.push_back(available_threads());
     for (const StageCase& c : stage_cases())

@@ -2,6 +2,8 @@
 // the built-in workloads, at 1920 x 1080 with tiles of 128 pixels. One thread, but for the stages.
 #pragma once
 
+#include "kernel_work.h"
+
 #include "cli/workloads.h"
 #include "core/parallel.h"
 #include "raster/engine.h"
@@ -9,21 +11,12 @@
 #include "render/shading_scene.h"
 #include "tile/tile.h"
 
-#include <cstddef>
 #include <functional>
 #include <memory>
 #include <string>
 #include <vector>
 
 namespace tessera::bench {
-
-using Bytes = std::vector<std::byte>;
-
-template <class T>
-void append(Bytes& bytes, const T* data, std::size_t count) {
-    const auto* first = reinterpret_cast<const std::byte*>(data);
-    bytes.insert(bytes.end(), first, first + count * sizeof(T));
-}
 
 // A workload ready to draw, set up and binned by the scalar kernels. Made once, then kept.
 class BenchFrame {
@@ -56,18 +49,8 @@ struct Kernels : RasterKernels, TileKernels {
     explicit Kernels(Isa isa) : RasterKernels(raster_kernels(isa)), TileKernels(tile_kernels(isa)) {}
 };
 
-// One kernel's job in the making.
-struct KernelWork {
-    std::uint64_t items;                        // pixels, triangles, vertices or indices
-    std::function<void()> clear;                // what it writes; not timed
-    std::function<double(const Kernels&)> run;  // seconds of processor time in the kernel
-    std::function<Bytes()> output;              // all that the last run wrote
-};
-
-struct KernelCase {
-    std::string name;  // kernel/case
-    std::function<KernelWork()> make;
-};
+using KernelWork = WorkOf<Kernels>;
+using KernelCase = CaseOf<Kernels>;
 
 // A stage of a whole frame on a number of threads.
 struct StageWork {
@@ -79,16 +62,6 @@ struct StageCase {
     std::string name;  // stage/workload
     std::function<StageWork(Isa, int threads)> make;
 };
-
-// Of this thread, in seconds.
-double processor_time();
-
-template <class Run>
-double seconds_of(Run&& run) {
-    const double start = processor_time();
-    run();
-    return processor_time() - start;
-}
 
 std::vector<KernelCase> front_end_cases();
 std::vector<KernelCase> visibility_cases();

@@ -1,7 +1,6 @@
 #include "raster_kernel_cases.h"
 
 #include <algorithm>
-#include <ctime>
 #include <map>
 #include <random>
 
@@ -27,12 +26,6 @@ cli::Workload make(std::string name) {
 }
 
 }  // namespace
-
-double processor_time() {
-    timespec t{};
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-    return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
 
 BenchFrame& BenchFrame::of(const std::string& name) {
     static std::map<std::string, std::unique_ptr<BenchFrame>> kept;

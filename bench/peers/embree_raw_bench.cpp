@@ -15,11 +15,6 @@
 namespace peers {
 namespace {
 
-// Packets run through other code than single rays, so a ray that grazes an edge may be decided the other way; on these
-// scenes none is.
-constexpr double kHitTolerance = 2e-6;       // of the rays
-constexpr double kDistanceTolerance = 2e-6;  // of the mean distance
-
 struct Options {
     std::vector<std::string> scenes{"sphere100k", "hf100k", "hf1m"}, kinds{"primary", "shadow", "mirror", "diffuse"};
     std::vector<int> widths{1, 4, 8, 16};
@@ -99,30 +94,6 @@ Totals trace_frame(const Work& work, int width) {
         totals.hits += hits.count;
         totals.distance += static_cast<double>(hits.distance);
     });
-}
-
-// The hits of the primary rays, where the secondary rays start.
-void find_points(RTCScene scene, Frame& frame) {
-    for_tiles(frame, [&frame, scene](int tile, RayTile& rays, Totals&) {
-        RTCIntersectContext context = make_context(false);
-        const int count = frame.generate(Kind::kPrimary, tile, rays);
-        SurfacePoints& points = frame.points[static_cast<std::size_t>(tile)];
-        for (int i = 0; i < count; ++i) {
-            const vec3 direction(rays.dir_x[i], rays.dir_y[i], rays.dir_z[i]);
-            const RTCRayHit query = intersect(scene, context, frame.camera.eye, direction);
-            if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) continue;
-            const int pixel = tile * frame.tile_side * frame.tile_side + i;
-            points.add(frame.camera.eye + query.ray.tfar * direction, facing_normal(query),
-                       static_cast<std::uint32_t>(pixel));
-        }
-    });
-}
-
-bool agree(const Totals& packets, const Totals& singles) {
-    const double hits = std::abs(static_cast<double>(packets.hits) - static_cast<double>(singles.hits));
-    const double distance = std::abs(packets.mean_distance() - singles.mean_distance());
-    return packets.rays == singles.rays && hits <= kHitTolerance * static_cast<double>(singles.rays) &&
-           distance <= kDistanceTolerance * singles.mean_distance();
 }
 
 // Whether all widths agree.

@@ -1,0 +1,8 @@
+find_package(benchmark REQUIRED)
+target_link_libraries(tessera_trace_kernel_bench PRIVATE benchmark::benchmark embree TBB::tbb)
+foreach(name raster_kernel_frame trace_kernel_wave trace_kernel_rays trace_kernel_points trace_kernel_embree)
+  target_sources(tessera_trace_kernel_bench PRIVATE ${CMAKE_CURRENT_SOURCE_DIR}/${name}.cpp)
+endforeach()
+foreach(name workloads workload_meshes traced_workloads parse)
+  target_sources(tessera_trace_kernel_bench PRIVATE ${PROJECT_SOURCE_DIR}/src/cli/${name}.cpp)
+endforeach()
