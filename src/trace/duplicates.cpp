@@ -34,17 +34,30 @@ void make_keys(const TriangleSet& set, Arena& arena, std::vector<std::uint32_t>&
     });
 }
 
-// The keys that occur more than once and, by chance, a few that do not: the second of two that meet in one bit.
+// A set of keys that may hold a few more than were put in: a bit each, shared by chance.
+class KeyFilter {
+  public:
+    explicit KeyFilter(std::size_t keys)
+        : shift_(32 - std::clamp(static_cast<int>(std::bit_width(16 * keys)), 6, 32)),
+          bits_((std::size_t{1} << (32 - shift_)) / 64) {}
+
+    bool has(std::uint32_t key) const { return (bits_[place(key) / 64] >> place(key) % 64 & 1u) != 0; }
+    void add(std::uint32_t key) { bits_[place(key) / 64] |= std::uint64_t{1} << place(key) % 64; }
+
+  private:
+    std::size_t place(std::uint32_t key) const { return (key * 0x85ebca6bu) >> shift_; }
+
+    int shift_;
+    std::vector<std::uint64_t> bits_;
+};
+
+// The keys that occur more than once and, by chance, a few that do not.
 std::vector<std::uint32_t> repeated_keys(const std::vector<std::uint32_t>& keys) {
-    const int log2_bits = std::clamp(static_cast<int>(std::bit_width(16 * keys.size())), 6, 32);
-    std::vector<std::uint64_t> seen((std::size_t{1} << log2_bits) / 64);
+    KeyFilter seen(keys.size());
     std::vector<std::uint32_t> repeated;
     for (const std::uint32_t key : keys) {
-        const std::uint32_t bit = key >> (32 - log2_bits);
-        std::uint64_t& word = seen[bit / 64];
-        const std::uint64_t mask = std::uint64_t{1} << (bit % 64);
-        if (word & mask) repeated.push_back(key);
-        word |= mask;
+        if (seen.has(key)) repeated.push_back(key);
+        seen.add(key);
     }
     return repeated;
 }
@@ -54,16 +67,20 @@ enum class Relation { kApart, kSame, kMirrored };
 class Places {
   public:
     Places(std::span<const TriangleSet> sets, const std::vector<std::uint32_t>& keys)
-        : sets_(sets), shift_(32 - std::clamp(static_cast<int>(std::bit_width(2 * keys.size())), 4, 32)) {
+        : sets_(sets),
+          shift_(32 - std::clamp(static_cast<int>(std::bit_width(2 * keys.size())), 4, 32)),
+          known_(keys.size()) {
         slots_.resize(std::size_t{1} << (32 - shift_));
         for (const std::uint32_t key : keys) {
             Slot& slot = find(key);
             slot = {key, slot.first == kEmpty ? kNone : slot.first};
+            known_.add(key);
         }
     }
 
     // Whether the triangle is hidden by those that were added before. Keys but those of the constructor are not.
     bool add(std::uint32_t key, std::uint32_t set, std::uint32_t triangle) {
+        if (!known_.has(key)) return false;  // most: that stays in the cache
         Slot& slot = find(key);
         if (slot.first == kEmpty) return false;
         const unsigned sides = sets_[set].front | static_cast<unsigned>(sets_[set].back) << 8;
@@ -121,6 +138,7 @@ class Places {
 
     std::span<const TriangleSet> sets_;
     int shift_;
+    KeyFilter known_;
     std::vector<Slot> slots_;
     std::vector<Place> places_{1};
 };
