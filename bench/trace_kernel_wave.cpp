@@ -174,7 +174,7 @@ void BenchWave::find_light() {
         shadow_count_ = job.made;
         for (std::uint32_t first = 0; first < job.made; first += kPacketWidth) {
             kernels_.pack(pack_shadow_rays(first, packet));
-            scene_.occluded(packet.valid, packet.rays, true, true);
+            scene_.occluded(packet.valid, packet.rays, true, nullptr, true);
             for (std::uint32_t lane = 0; lane < kPacketWidth && first + lane < job.made; ++lane)
                 arrives_[static_cast<std::size_t>(job.light) * stride + shadow_point_[first + lane]] =
                     packet.rays.t_far[lane] < 0.0f ? 0.0f : 1.0f;

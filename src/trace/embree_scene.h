@@ -69,12 +69,11 @@ class EmbreeScene {
     template <int W>
     void nearest(const int* valid, RayPacket<W>& rays, bool coherent, bool from_camera, std::vector<SheerHit>* sheer,
                  bool checked = false) const;
-    // Whether anything solid is in the way; faces stop light from both sides.
+    // Whether anything solid is in the way; faces stop light from both sides. Sheer surfaces are not; those along rays
+    // that nothing stops are appended to `sheer`, as above, and maybe others.
     template <int W>
-    void occluded(const int* valid, RayPacket<W>& rays, bool coherent, bool checked = false) const;
-    // All sheer surfaces along the rays.
-    template <int W>
-    void find_sheer(const int* valid, RayPacket<W>& rays, std::vector<SheerHit>& sheer) const;
+    void occluded(const int* valid, RayPacket<W>& rays, bool coherent, std::vector<SheerHit>* sheer = nullptr,
+                  bool checked = false) const;
 
     bool has_sheer() const;
     bool has_undecided() const;

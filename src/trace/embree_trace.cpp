@@ -74,12 +74,12 @@ struct TraceContext {
     RTCIntersectContext embree;
     const Impl* scene;
     std::uint32_t checks;          // those of a slot that count
-    bool keep_solid;               // else no hit stands
+    std::uint32_t passed;          // slots with one of these checks are passed and noted
     std::vector<SheerHit>* sheer;  // null: not noted
     bool failed;                   // there was no memory to note them
 
     TraceContext(const Impl& impl, bool coherent)
-        : scene(&impl), checks(0), keep_solid(true), sheer(nullptr), failed(false) {
+        : scene(&impl), checks(0), passed(Impl::kUndecided), sheer(nullptr), failed(false) {
         rtcInitIntersectContext(&embree);
         embree.flags = coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
     }
@@ -114,8 +114,8 @@ void filter_hits(const RTCFilterFunctionNArguments* args) {
                             RTCHitN_Ng_y(hit, n, i) * RTCRayN_dir_y(ray, n, i) +
                             RTCHitN_Ng_z(hit, n, i) * RTCRayN_dir_z(ray, n, i);
         const bool seen = !back_is_culled(slot, context.checks, along);
-        const bool sheer = !context.keep_solid || (slot.checks & Impl::kUndecided);
-        if (seen && !sheer && context.keep_solid) continue;
+        const bool sheer = (slot.checks & context.passed) != 0;
+        if (seen && !sheer) continue;
         args->valid[i] = 0;
         if (!seen || !sheer || !context.sheer) continue;
         try {
@@ -192,12 +192,16 @@ void in_native_parts(const Lanes<W>& lanes, RayPacket<W>& rays, int native, cons
     trace(lanes.on, reinterpret_cast<typename EmbreeRays<W>::Type*>(&rays), EmbreeRays<W>{});
 }
 
+void throw_if_failed(const TraceContext& context) {
+    if (context.failed) throw Error(ErrorCode::kLimit, "there is not enough memory for the surfaces along a ray");
+}
+
 template <int W>
 void intersect(const Lanes<W>& lanes, RayPacket<W>& rays, TraceContext& context) {
     in_native_parts(lanes, rays, context.scene->device.packet_width(), [&](const int* on, auto* packet, auto embree) {
         embree.intersect(on, context.scene->traced, &context.embree, packet);
     });
-    if (context.failed) throw Error(ErrorCode::kLimit, "there is not enough memory for the surfaces along a ray");
+    throw_if_failed(context);
 }
 
 // For as long as it lives, the rays do not meet the surfaces of some kinds.
@@ -338,34 +342,27 @@ void EmbreeScene::nearest(const int* valid, RayPacket<W>& rays, bool coherent, b
 }
 
 template <int W>
-void EmbreeScene::occluded(const int* valid, RayPacket<W>& rays, bool coherent, bool checked) const {
+void EmbreeScene::occluded(const int* valid, RayPacket<W>& rays, bool coherent, std::vector<SheerHit>* sheer,
+                           bool checked) const {
     Lanes<W> lanes;
     if (!take_lanes(valid, rays, checked, lanes) || !impl_->traced) return;
-    const LeaveOut<W> leave_out(rays, has_sheer(), kMeetsSheer);
+    const LeaveOut<W> leave_out(rays, has_sheer() && !sheer, kMeetsSheer);
     // rtcOccluded16 of Embree 3.13.5 never returns for coherent rays in a scene of instances, with AVX-512.
     TraceContext context(*impl_, coherent && !impl_->top);
+    if (sheer) {
+        context.embree.filter = filter_hits;
+        context.passed = Impl::kSheer;
+        context.sheer = sheer;
+    }
     in_native_parts(lanes, rays, impl_->device.packet_width(), [&](const int* on, auto* packet, auto embree) {
         embree.occluded(on, impl_->traced, &context.embree, packet);
     });
-}
-
-template <int W>
-void EmbreeScene::find_sheer(const int* valid, RayPacket<W>& rays, std::vector<SheerHit>& sheer) const {
-    Lanes<W> lanes;
-    if (!has_sheer() || !prepare(valid, rays, lanes)) return;
-    const LeaveOut<W> leave_out(rays, true, ~kMeetsSheer);
-    TraceContext context(*impl_, false);
-    context.embree.filter = filter_hits;
-    context.keep_solid = false;
-    context.sheer = &sheer;
-    for (int i = 0; i < W; ++i) rays.geometry[i] = lanes.on[i] ? kNoHit : rays.geometry[i];
-    intersect(lanes, rays, context);
+    throw_if_failed(context);
 }
 
 #define TESSERA_PACKETS(W)                                                                                            \
     template void EmbreeScene::nearest<W>(const int*, RayPacket<W>&, bool, bool, std::vector<SheerHit>*, bool) const; \
-    template void EmbreeScene::occluded<W>(const int*, RayPacket<W>&, bool, bool) const;                              \
-    template void EmbreeScene::find_sheer<W>(const int*, RayPacket<W>&, std::vector<SheerHit>&) const;
+    template void EmbreeScene::occluded<W>(const int*, RayPacket<W>&, bool, std::vector<SheerHit>*, bool) const;
 TESSERA_PACKETS(1)
 TESSERA_PACKETS(4)
 TESSERA_PACKETS(8)

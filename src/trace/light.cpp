@@ -31,6 +31,7 @@ void WaveShader::find_light(Wave& wave) {
     job.rays = shadow_rays_;
     job.t_far = shadow_far_.reserve(shadow_rays_.stride);
     job.point = shadow_point_.reserve(shadow_rays_.stride);
+    std::fill_n(shadow_packet_.rays.mask, kPacketWidth, colored ? kMeetsSolid | kMeetsSheer : kMeetsSolid);
     for (int light = 0; light < scene_->shading->light_count; ++light) {
         job.light = light;
         scene_->kernels->shadow_rays(job);
@@ -40,7 +41,8 @@ void WaveShader::find_light(Wave& wave) {
             const int* const valid = shadow_packet_.valid;
             scene_->kernels->pack(
                 {shadow_rays_, scene_->scene->trace_from_camera(), first, job.made, job.t_far, &shadow_packet_});
-            scene_->scene->occluded(valid, packet, true, true);
+            sheer_.clear();
+            scene_->scene->occluded(valid, packet, true, colored ? &sheer_ : nullptr, true);
             float* const arrived = arrives + static_cast<std::size_t>(light * arrival_.channels) * arrival_.stride;
             if (colored) {
                 attenuate(packet, valid, first, arrived, wave);
@@ -64,22 +66,15 @@ void WaveShader::find_light(Wave& wave) {
 void WaveShader::attenuate(RayPacket<kPacketWidth>& packet, const int* valid, std::uint32_t first, float* arrived,
                            const Wave& wave) {
     alignas(64) int free[kPacketWidth];
-    bool any = false;
     float left[kPacketWidth][3];
     for (std::uint32_t lane = 0; lane < kPacketWidth; ++lane) {
         free[lane] = valid[lane] && !(packet.t_far[lane] < 0.0f) ? -1 : 0;
-        any |= free[lane] != 0;
         for (float& channel : left[lane]) channel = free[lane] ? 1.0f : 0.0f;
-    }
-    sheer_.clear();
-    if (any) {
-        std::fill_n(packet.mask, kPacketWidth, kMeetsSheer);
-        scene_->scene->find_sheer(free, packet, sheer_);
-        std::fill_n(packet.mask, kPacketWidth, kMeetsSolid);
     }
     // Products of many factors depend on their order.
     sort_by_triangle(sheer_);
     for (const SheerHit& hit : sheer_) {
+        if (!free[hit.lane]) continue;
         if (const auto& even = scene_->even_transmittance[hit.instance]) {
             left[hit.lane][0] *= even->x, left[hit.lane][1] *= even->y, left[hit.lane][2] *= even->z;
             continue;
