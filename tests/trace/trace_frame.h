@@ -197,7 +197,7 @@ std::vector<SheerHit> find_sheer(const EmbreeScene& scene, const std::vector<Ray
     std::vector<SheerHit> all;
     in_packets<W>(scene, rays, [&](const int* valid, RayPacket<W>& p, std::size_t first) {
         std::vector<SheerHit> sheer;
-        std::fill_n(p.mask, W, kMeetsSheer);  // nothing solid stops them
+        for (std::uint32_t& mask : p.mask) mask &= kMeetsSheer;  // nothing solid stops them
         scene.occluded<W>(valid, p, false, &sheer);
         for (SheerHit& s : sheer) {
             s.lane += static_cast<std::uint32_t>(first);
