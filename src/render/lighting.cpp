@@ -48,16 +48,15 @@ struct MeterPoint {
 };
 
 // Adds `count` points spread over one triangle that lie within the picture.
-void meter_triangle(const Frame& frame, const ShadingContext& context, std::uint32_t number, int count,
-                    TriangleSetup& setup, std::vector<MeterPoint>& points) {
-    const InstanceView& instance = frame.instance_of(number);
-    setup_triangle(instance, number - instance.first_triangle, frame.projection, setup);
+void meter_triangle(const Frame& frame, const ShadingContext& context, const InstanceView& instance,
+                    std::uint32_t triangle, int count, TriangleSetup& setup, std::vector<MeterPoint>& points) {
+    setup_triangle(instance, triangle, frame.projection, setup);
     if (!setup.visible()) return;
     const bool front = setup.front(instance);
     if (!front && !context.materials[instance.material].double_sided) return;
     Vec3T<float> p[3];
     for (int i = 0; i < 3; ++i) {
-        const std::uint32_t v = instance.mesh.triangles[3 * std::size_t{number - instance.first_triangle} + i];
+        const std::uint32_t v = instance.mesh.triangles[3 * std::size_t{triangle} + i];
         p[i] = transform_point(instance.object_to_camera,
                                Vec3T<float>::load(instance.mesh.positions + 3 * std::size_t{v}));
     }
@@ -83,6 +82,12 @@ void meter_triangle(const Frame& frame, const ShadingContext& context, std::uint
         const MeterPoint point{irradiance(context, at, normal), facing / static_cast<float>(count)};
         if (point.value > 0 && point.weight > 0 && point.value < 1e30f && point.weight < 1e30f) points.push_back(point);
     }
+}
+
+// Of an exact shape, which has a number or two, those of its tessellation.
+std::uint32_t metered_triangles(const Frame& frame, std::size_t instance) {
+    return frame.instances[instance].shape ? frame.prepared[instance]->view.triangle_count
+                                           : frame.instances[instance].mesh.triangle_count;
 }
 
 }  // namespace
@@ -122,22 +127,25 @@ AmbientView uniform_ambient(Vec3 radiance) {
 
 double metered_exposure(const Frame& frame, const ShadingContext& context) {
     // Points and lines say little of the light, and count only where there is nothing else.
-    std::uint32_t count = 0;
-    for (const InstanceView& i : frame.instances) count += i.mesh.is_stroke() ? 0 : i.mesh.triangle_count;
+    std::uint64_t count = 0;
+    for (std::size_t i = 0; i < frame.instances.size(); ++i)
+        count += frame.instances[i].mesh.is_stroke() ? 0 : metered_triangles(frame, i);
     const bool strokes = count == 0;
     if (strokes) count = frame.triangle_count;
     if (count == 0) return 1.0;
-    const std::uint32_t step = (count + kMeterPoints - 1) / kMeterPoints;
-    const int per_triangle = static_cast<int>(std::clamp(kMeterPoints / count, 1u, 64u));
+    const std::uint64_t step = (count + kMeterPoints - 1) / kMeterPoints;
+    const int per_triangle = static_cast<int>(std::clamp<std::uint64_t>(kMeterPoints / count, 1, 64));
     std::vector<MeterPoint> points;
     TriangleSetup setup;
     std::uint64_t next = step / 2, passed_by = 0;
-    for (const InstanceView& i : frame.instances) {
-        if (i.mesh.is_stroke() && !strokes) continue;
-        for (; next < passed_by + i.mesh.triangle_count; next += step)
-            meter_triangle(frame, context, i.first_triangle + static_cast<std::uint32_t>(next - passed_by),
-                           per_triangle, setup, points);
-        passed_by += i.mesh.triangle_count;
+    for (std::size_t i = 0; i < frame.instances.size(); ++i) {
+        const InstanceView& instance = frame.instances[i];
+        if (instance.mesh.is_stroke() && !strokes) continue;
+        const std::uint32_t triangles = metered_triangles(frame, i);
+        for (; next < passed_by + triangles; next += step)
+            meter_triangle(frame, context, instance, static_cast<std::uint32_t>(next - passed_by), per_triangle, setup,
+                           points);
+        passed_by += triangles;
     }
     if (points.empty()) return 1.0;
     std::stable_sort(points.begin(), points.end(),
