@@ -84,6 +84,12 @@ void meter_triangle(const Frame& frame, const ShadingContext& context, const Ins
     }
 }
 
+// Of an exact shape, which has a number or two, those of its tessellation.
+std::uint32_t metered_triangles(const Frame& frame, std::size_t instance) {
+    return frame.instances[instance].shape ? frame.prepared[instance]->view.triangle_count
+                                           : frame.instances[instance].mesh.triangle_count;
+}
+
 }  // namespace
 
 std::vector<LightView> scene_lights(const Scene& scene, const Frame& frame) {
@@ -121,27 +127,25 @@ AmbientView uniform_ambient(Vec3 radiance) {
 
 double metered_exposure(const Frame& frame, const ShadingContext& context) {
     // Points and lines say little of the light, and count only where there is nothing else.
-    // Shapes count by their triangles, however they are drawn.
-    const auto triangles_of = [&](std::size_t i) { return frame.prepared[i]->view.triangle_count; };
-    std::uint32_t count = 0, all = 0;
-    for (std::size_t i = 0; i < frame.instances.size(); ++i) {
-        count += frame.instances[i].mesh.is_stroke() ? 0 : triangles_of(i);
-        all += triangles_of(i);
-    }
+    std::uint64_t count = 0;
+    for (std::size_t i = 0; i < frame.instances.size(); ++i)
+        count += frame.instances[i].mesh.is_stroke() ? 0 : metered_triangles(frame, i);
     const bool strokes = count == 0;
-    if (strokes) count = all;
+    if (strokes) count = frame.triangle_count;
     if (count == 0) return 1.0;
-    const std::uint32_t step = (count + kMeterPoints - 1) / kMeterPoints;
-    const int per_triangle = static_cast<int>(std::clamp(kMeterPoints / count, 1u, 64u));
+    const std::uint64_t step = (count + kMeterPoints - 1) / kMeterPoints;
+    const int per_triangle = static_cast<int>(std::clamp<std::uint64_t>(kMeterPoints / count, 1, 64));
     std::vector<MeterPoint> points;
     TriangleSetup setup;
     std::uint64_t next = step / 2, passed_by = 0;
     for (std::size_t i = 0; i < frame.instances.size(); ++i) {
-        if (frame.instances[i].mesh.is_stroke() && !strokes) continue;
-        for (; next < passed_by + triangles_of(i); next += step)
-            meter_triangle(frame, context, frame.instances[i], static_cast<std::uint32_t>(next - passed_by),
-                           per_triangle, setup, points);
-        passed_by += triangles_of(i);
+        const InstanceView& instance = frame.instances[i];
+        if (instance.mesh.is_stroke() && !strokes) continue;
+        const std::uint32_t triangles = metered_triangles(frame, i);
+        for (; next < passed_by + triangles; next += step)
+            meter_triangle(frame, context, instance, static_cast<std::uint32_t>(next - passed_by), per_triangle, setup,
+                           points);
+        passed_by += triangles;
     }
     if (points.empty()) return 1.0;
     std::stable_sort(points.begin(), points.end(),

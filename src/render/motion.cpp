@@ -1,5 +1,6 @@
 #include "render/motion.h"
 
+#include "geometry/matrix.h"
 #include "shading/shape_surface.h"
 #include "shading/triangle_setup.h"
 
@@ -77,16 +78,16 @@ class OtherTriangles {
     }
 
     // The same for a point at `q` that has no surface around it, of a point or line of that number in the scene:
-    // whether the pixel shows itself, or nothing that is nearer.
-    bool sees_point(std::uint32_t primitive, float depth, SamplePosition q) {
+    // whether the pixel shows itself, or nothing that is nearer. `front`: of shapes, the side that has to be shown.
+    bool sees_point(std::uint32_t primitive, float depth, SamplePosition q, std::optional<bool> front = {}) {
         const auto width = static_cast<std::size_t>(other_.frame.projection.width);
         const std::uint32_t number =
             other_.seen[static_cast<std::size_t>(q.y >> 8) * width + static_cast<std::size_t>(q.x >> 8)];
         if (number == 0) return true;
         const InstanceView& instance = other_.frame.instance_of(number - 1);
-        if (instance.first_primitive + instance.mesh.element_of(number - 1 - instance.first_triangle) == primitive)
-            return true;
         const TriangleSetup& t = setup(number - 1);
+        if (instance.first_primitive + instance.mesh.element_of(number - 1 - instance.first_triangle) == primitive)
+            return !front || *front == t.front(instance);
         return t.depth.at(q.x, q.y) <= depth + slack(t, 256) + 1e-6f * depth;
     }
 
@@ -158,7 +159,7 @@ bool barycentrics(const glm::dvec4 (&v)[3], double x, double y, double (&b)[3], 
 class RowMotion {
   public:
     RowMotion(const Frame& now, const OtherShot& other, const Moved& moved, const MaterialView* materials)
-        : now_(now), other_(other), moved_(moved), triangles_(other, materials) {}
+        : now_(now), other_(other), moved_(moved), materials_(materials), triangles_(other, materials) {}
 
     // Writes x and y to `vector`; returns whether the point is seen there.
     bool measure(std::uint32_t triangle, int x, int y, float* vector) {
@@ -191,10 +192,9 @@ class RowMotion {
     bool measure_shape(int x, int y, float* vector) {
         const PictureRays rays(now_.projection);
         const float at_x = static_cast<float>(256 * x + 128), at_y = static_cast<float>(256 * y + 128);
-        const Vec3T<float> p =
-            hit_shape<float>(shape_->shape, picture_ray(now_.projection, rays, at_x, at_y), local_ == kLeavingSphere)
-                .position;
-        const float position[3] = {p.x, p.y, p.z};
+        const ShapeHit<float> hit =
+            hit_shape<float>(shape_->shape, picture_ray(now_.projection, rays, at_x, at_y), local_ == kLeavingSphere);
+        const float position[3] = {hit.position.x, hit.position.y, hit.position.z};
         const glm::dvec4 to = clip_position(other_.frame.node_to_clip[node_], position);
         const double w = static_cast<double>(now_.projection.width), h = static_cast<double>(now_.projection.height);
         const double qx = stands_ ? x + 0.5 : (to.x / to.w + 1) * 0.5 * w,
@@ -202,9 +202,19 @@ class RowMotion {
         if (!(to.w > 0) || !(std::fabs(qx) < 1e7 && std::fabs(qy) < 1e7)) return false;
         vector[0] = static_cast<float>(qx - (x + 0.5)), vector[1] = static_cast<float>(qy - (y + 0.5));
         const bool inside = qx >= 0 && qx < w && qy >= 0 && qy < h && to.z <= to.w && to.z >= 0;
-        return inside &&
+        const bool front = faces_there(hit);
+        return inside && (front || materials_[shape_->material].double_sided) &&
                triangles_.sees_point(primitive_, static_cast<float>(to.z / to.w),
-                                     {static_cast<std::int32_t>(qx * 256), static_cast<std::int32_t>(qy * 256)});
+                                     {static_cast<std::int32_t>(qx * 256), static_cast<std::int32_t>(qy * 256)}, front);
+    }
+
+    // Whether the shape's front is towards the eye of the other shot.
+    bool faces_there(const ShapeHit<float>& hit) const {
+        const auto wide = [](const Vec3T<float>& v) {
+            return glm::dvec3(static_cast<double>(v.x), static_cast<double>(v.y), static_cast<double>(v.z));
+        };
+        const glm::dvec3 n = wide(hit.normal);
+        return glm::dot(n, glm::dvec3(eye_there_)) > glm::dot(n, wide(hit.position)) * eye_there_.w;
     }
 
     // Points move as their centres do, and what lines show as the points of the line beside it along the minor axis.
@@ -248,6 +258,11 @@ class RowMotion {
         shape_ = instance.shape ? &instance : nullptr;
         primitive_ = instance.first_primitive + instance.mesh.element_of(local_);
         const std::uint32_t node = node_ = now_.node_of_instance[i];
+        if (shape_) {
+            // In clip space eyes, near or infinitely far, are on the axis of depth.
+            const std::optional<glm::dmat4> inverse = inverse_matrix(other_.frame.node_to_clip[node]);
+            eye_there_ = inverse ? *inverse * glm::dvec4(0, 0, 1, 0) : glm::dvec4(0.0);
+        }
         if (shape_ || (stands_ && !stroke_)) return;
         const PreparedMesh& mesh = prepared_mesh(*now_.prepared[i]);
         const float* const positions = other_.positions_of(mesh);
@@ -263,11 +278,13 @@ class RowMotion {
     const Frame& now_;
     const OtherShot& other_;
     const Moved& moved_;
+    const MaterialView* materials_;
     OtherTriangles triangles_;
     std::uint32_t triangle_ = 0xffffffffu, local_ = 0, there_instance_ = kNoInstance, primitive_ = 0, node_ = 0;
     const InstanceView* shape_ = nullptr;  // drawn by its formula
     bool stands_ = false, stroke_ = false;
     glm::dvec4 here_[3], there_[3];
+    glm::dvec4 eye_there_;  // in the space of a shape
 };
 
 }  // namespace

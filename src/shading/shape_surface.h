@@ -36,7 +36,7 @@ TESSERA_INLINE ShapeHit<F> hit_sphere(const Vec3T<F>& o, const Vec3T<F>& d, F ra
     hit.position = n * radius;
     constexpr float kTurn = 0.15915494f, kHalfTurn = 0.31830989f;  // 1 / 2 pi, 1 / pi
     const F off_axis = sqrt(n.x * n.x + n.z * n.z);
-    hit.uv = {F(0.5f) + math::atan2(n.x, n.z) * F(kTurn), math::atan2(off_axis, n.y) * F(kHalfTurn)};
+    hit.uv = {F(0.5f) + math::atan2(n.x, n.z) * F(kTurn), min(math::atan2(off_axis, n.y) * F(kHalfTurn), one)};
     hit.along_u = {n.z, zero, -n.x};
     const F inverse_radius = one / radius, across = inverse_radius / max(off_axis, F(1e-4f));
     hit.u_slope = hit.along_u * (F(kTurn) * across / max(off_axis, F(1e-4f)));

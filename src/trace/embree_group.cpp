@@ -4,6 +4,8 @@
 
 #include <bit>
 #include <cstring>
+#include <map>
+#include <utility>
 
 namespace tessera {
 namespace {
@@ -81,12 +83,14 @@ void Group::build(Arena& arena, const float* to_camera) {
     scene_ = device_.new_scene(lasting ? RTC_BUILD_QUALITY_MEDIUM : RTC_BUILD_QUALITY_LOW,
                                key_.kind == GroupKind::kDeformed ? RTC_SCENE_FLAG_DYNAMIC : RTC_SCENE_FLAG_NONE);
     mask_ = 0;
+    const std::vector<bool> hidden = hidden_shapes();
     for (std::uint32_t m = 0; m < parts_.size(); ++m) {
         mask_ |= key_.members[m].type.mask;
         if (key_.members[m].shape == ShapeView::Kind::kTriangles)
             attach(m);
-        else
+        else if (!hidden[m])
             attach_shape(m);
+        duplicates_ += hidden[m];
     }
     commit(arena);
     if (key_.kind == GroupKind::kDeformed)
@@ -133,6 +137,25 @@ std::vector<std::vector<std::uint32_t>> Group::duplicate_triangles(Arena& arena)
     std::vector<TriangleSet> sets;
     for (std::size_t m = 0; m < parts_.size(); ++m) sets.push_back(triangle_set(key_.members[m], positions(m)));
     return find_duplicates(sets, arena);
+}
+
+// By member: whether it is a shape that stands exactly where earlier ones do, and hidden by them from all rays.
+std::vector<bool> Group::hidden_shapes() const {
+    struct Seen {
+        std::uint8_t front = 0, back = 0;  // as those of a TriangleSet
+    };
+    std::map<std::pair<ShapeView::Kind, float>, Seen> found;
+    std::vector<bool> hidden(parts_.size());
+    for (std::size_t m = 0; m < parts_.size(); ++m) {
+        const GroupMember& member = key_.members[m];
+        if (member.shape == ShapeView::Kind::kTriangles) continue;
+        const TriangleSet own = triangle_set(member, nullptr);
+        Seen& seen = found[{member.shape, member.radius}];
+        hidden[m] = (own.front | own.back) && !(own.front & ~seen.front) && !(own.back & ~seen.back);
+        seen.front |= own.front;
+        seen.back |= own.back;
+    }
+    return hidden;
 }
 
 void Group::leave_out(const GroupMember& member, const std::vector<std::uint32_t>& dropped, Part& part) {

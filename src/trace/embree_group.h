@@ -71,6 +71,7 @@ class Group {
 
     void copy_positions(const GroupMember& member, const float* to_camera, Part& part);
     std::vector<std::vector<std::uint32_t>> duplicate_triangles(Arena& arena) const;
+    std::vector<bool> hidden_shapes() const;
     void leave_out(const GroupMember& member, const std::vector<std::uint32_t>& dropped, Part& part);
     void attach(std::uint32_t member);
     void attach_shape(std::uint32_t member);

@@ -3,6 +3,8 @@
 #include "shading/shape_surface.h"
 #include "shading/traced_shade.h"
 
+#include <algorithm>
+
 namespace tessera {
 
 bool SheerSurface::select(std::uint32_t instance, std::uint32_t triangle) {
@@ -27,6 +29,9 @@ RaySurface<float> SheerSurface::shape_point(SamplePosition at) const {
 
 float SheerSurface::depth(SamplePosition at) const {
     if (frame_.instances[instance_].shape) return depth_of(frame_.projection, shape_point(at).point.position);
+    // Rays may meet what the rasterizer does not see: everywhere its first corner (triangle_setup.h).
+    const ClipVertex<float>& corner = setup_.vertices[0];
+    if (!setup_.visible()) return corner.w > 0 ? std::min(corner.z / corner.w, 1.0f) : 0.0f;
     return setup_.depth.at(at.x, at.y);
 }
 

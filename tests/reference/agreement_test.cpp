@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "load/test_files.h"
+#include "reference/edge_distance.h"
 #include "reference/rasterizer.h"
 #include "reference/raycaster.h"
 #include "reference/workload_scene.h"
@@ -12,20 +13,8 @@
 namespace tessera {
 namespace {
 
+using test::edge_distance;
 using test::Prepared;
-
-// Distance in pixels from a sample to the nearest edge of a triangle's picture.
-double edge_distance(const TriangleSetup& t, SamplePosition at) {
-    double nearest = 1e30;
-    for (int i = 0; i < t.vertex_count; ++i) {
-        const SnappedVertex a = t.polygon[i], b = t.polygon[(i + 1) % t.vertex_count];
-        const double dx = b.x - a.x, dy = b.y - a.y, px = at.x - a.x, py = at.y - a.y;
-        const double squared = dx * dx + dy * dy;
-        const double s = squared > 0 ? std::clamp((px * dx + py * dy) / squared, 0.0, 1.0) : 0.0;
-        nearest = std::min(nearest, std::hypot(px - s * dx, py - s * dy) / 256.0);
-    }
-    return nearest;
-}
 
 struct Agreement {
     std::uint64_t samples = 0, near_edge = 0, coincident = 0, unexplained = 0;
@@ -47,7 +36,7 @@ Agreement compare(const Prepared& p, const Visibility& raster, const Visibility&
         const float zr = raster.depth[i], zt = traced.depth[i];
         if (distance <= 1.0 / 256) {
             ++a.near_edge;
-        } else if (r != 0 && t != 0 && std::fabs(zr - zt) <= 4 * 1.2e-7f * std::max(zr, zt)) {
+        } else if (r != 0 && t != 0 && test::coincident(zr, zt)) {
             ++a.coincident;
         } else {
             if (a.unexplained++ == 0)

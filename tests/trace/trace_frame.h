@@ -2,9 +2,12 @@
 // them by the double-precision reference tracer.
 #pragma once
 
+#include "geometry/matrix.h"
 #include "geometry/support.h"
 #include "reference/bvh.h"
 #include "trace/embree_scene.h"
+
+#include <tessera/scene.h>
 
 #include <algorithm>
 #include <cmath>
@@ -63,6 +66,13 @@ class TraceFrame {
         primitives_.push_back(std::move(primitive));
         return meshes_.size() - 1;
     }
+    // Spheres and discs: drawn by their formula where the frame has exact_shapes when they are placed.
+    std::size_t add_shape(const Shape& shape) {
+        primitives_.push_back(std::make_unique<Primitive>(shape_primitive(shape)));
+        meshes_.push_back(std::make_unique<PreparedMesh>(Primitive{}, *primitives_.back()));
+        return meshes_.size() - 1;
+    }
+    Shape& shape(std::size_t mesh) { return *primitives_[mesh]->shape; }
     std::vector<Vec3>& positions(std::size_t mesh) { return primitives_[mesh]->positions; }
     const std::vector<std::uint32_t>& indices(std::size_t mesh) const { return primitives_[mesh]->indices; }
     PreparedMesh& mesh(std::size_t m) { return *meshes_[m]; }
@@ -72,6 +82,14 @@ class TraceFrame {
         instance.mesh = meshes_[mesh]->view;
         std::copy_n(rows.m, 12, instance.object_to_camera);
         instance.handedness = determinant(rows.m) < 0 ? -1.0f : 1.0f;
+        const std::optional<Shape>& shape = primitives_[mesh]->shape;
+        if (shape && frame.exact_shapes && invert_rows(rows.m, instance.shape.camera_to_object)) {
+            const bool sphere = shape->type == Shape::Type::kSphere;
+            instance.shape.kind = sphere ? ShapeView::Kind::kSphere : ShapeView::Kind::kDisc;
+            instance.shape.radius = shape->radius;
+            instance.mesh.triangle_count = sphere ? 2 : 1;
+            frame.has_exact_shapes = true;
+        }
         instance.first_triangle = frame.triangle_count;
         frame.triangle_count += instance.mesh.triangle_count;
         frame.instances.push_back(instance);
@@ -82,6 +100,7 @@ class TraceFrame {
         frame.instances.clear();
         frame.prepared.clear();
         frame.triangle_count = 0;
+        frame.has_exact_shapes = false;
         classes.clear();
     }
 
@@ -252,6 +271,7 @@ class Truth {
     // Whether rounding alone may make the ray meet this triangle, or not, or from the other side.
     bool doubtful(const Ray& ray, std::uint32_t instance, std::uint32_t triangle) const {
         const CastRay cast = in_double(ray);
+        if (f_.frame.instances[instance].shape) return doubtful_shape(cast, f_.frame.instances[instance]);
         Vec3d v[3];
         corners(instance, triangle, v);
         const Vec3d n = cross(v[1] - v[0], v[2] - v[0]), d = cast.direction;
@@ -280,6 +300,25 @@ class Truth {
     static CastRay in_double(const Ray& ray) {
         return {{ray.org.x, ray.org.y, ray.org.z}, {ray.dir.x, ray.dir.y, ray.dir.z}};
     }
+    // A ray by the rim, or along the disc.
+    static bool doubtful_shape(const CastRay& ray, const InstanceView& instance) {
+        const auto [o, d] = in_object(ray, instance);
+        const double r = instance.shape.radius, size = std::sqrt(dot(o, o)) + r, along = std::sqrt(dot(d, d));
+        const bool sphere = instance.shape.kind == ShapeView::Kind::kSphere;
+        if (!sphere && std::fabs(d.y) < 1e-3 * along) return true;
+        const Vec3d p = o + d * (sphere ? -dot(o, d) / dot(d, d) : -o.y / d.y);
+        const double far = std::sqrt(dot(p, p));
+        // There a sphere's roots go by the square root of what rounding does.
+        return std::fabs(far - r) < (sphere ? 2e-3 * r : 0) + 1e-5 * size * along / (sphere ? along : std::fabs(d.y));
+    }
+    static CastRay in_object(const CastRay& ray, const InstanceView& instance) {
+        const float* m = instance.shape.camera_to_object;
+        const auto turn = [&](const Vec3d& v) {
+            return Vec3d{m[0] * v.x + m[1] * v.y + m[2] * v.z, m[4] * v.x + m[5] * v.y + m[6] * v.z,
+                         m[8] * v.x + m[9] * v.y + m[10] * v.z};
+        };
+        return {turn(ray.origin) + Vec3d{m[3], m[7], m[11]}, turn(ray.direction)};
+    }
     void corners(std::uint32_t instance, std::uint32_t triangle, Vec3d (&v)[3]) const {
         const InstanceView& i = f_.frame.instances[instance];
         const float* m = i.object_to_camera;
@@ -296,6 +335,12 @@ class Truth {
     Meeting meeting(const CastRay& ray, const RayHit& hit) const {
         const auto instance = static_cast<std::uint32_t>(&f_.frame.instance_of(hit.triangle) - &f_.frame.instances[0]);
         const std::uint32_t triangle = hit.triangle - f_.frame.instances[instance].first_triangle;
+        if (const ShapeView& shape = f_.frame.instances[instance].shape) {
+            const bool front = shape.kind == ShapeView::Kind::kSphere
+                                   ? triangle == 0
+                                   : in_object(ray, f_.frame.instances[instance]).direction.y < 0;
+            return {instance, triangle, hit.t, front};
+        }
         Vec3d v[3];
         corners(instance, triangle, v);
         const double along = dot(cross(v[1] - v[0], v[2] - v[0]), ray.direction);
