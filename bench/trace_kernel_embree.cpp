@@ -71,7 +71,7 @@ struct OurPackets {
         for (std::size_t n = 0; n < used; ++n) {
             Packet& p = all[n];
             if (kind == Kind::kShadow)
-                scene.occluded<W>(p.valid, p.rays, coherent, true);
+                scene.occluded<W>(p.valid, p.rays, coherent, nullptr, true);
             else
                 scene.nearest<W>(p.valid, p.rays, coherent, kind == Kind::kPrimary, nullptr, true);
         }

@@ -47,9 +47,7 @@ BenchWave::BenchWave(const Place& place)
     find_hits();
 }
 
-float BenchWave::size_of(std::uint32_t i) const {
-    return largest_coordinate(instance(i), frame_.frame.prepared[i]->bounds);
-}
+float BenchWave::size_of(std::uint32_t i) const { return largest_coordinate(instance(i), *frame_.frame.prepared[i]); }
 
 // --- what is seen -------------------------------------------------------------------------------
 

@@ -335,7 +335,7 @@ TEST_P(EmbreeShapes, LanesThatAreOffAreNotTouched) {
         std::vector<SheerHit> sheer;
         if (round % 3 == 0) scene.nearest<16>(valid, packet, round % 2, true, &sheer);
         if (round % 3 == 1) scene.occluded<16>(valid, packet, round % 2);
-        if (round % 3 == 2) scene.find_sheer<16>(valid, packet, sheer);
+        if (round % 3 == 2) scene.occluded<16>(valid, packet, round % 2, &sheer);
         for (const SheerHit& s : sheer) EXPECT_TRUE(valid[s.lane]);
         for (int i = 0; i < 16; ++i) {
             const Ray& ray = rays[static_cast<std::size_t>(i)];
