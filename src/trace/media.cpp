@@ -72,6 +72,7 @@ void WaveShader::absorb(Wave& wave) const {
         const std::uint32_t ray = wave.ray[p];
         if (!wave.used[p] || wave.states[ray].media.count == 0) continue;
         const MaterialView& medium = materials[wave.states[ray].media.current(materials)];
+        if (std::all_of(medium.absorption, medium.absorption + 3, [](float a) { return a == 0.0f; })) continue;
         const Vec3T<float> left = transmittance(Vec3T<float>::load(medium.absorption), wave.distance[p]);
         const float part[3] = {left.x, left.y, left.z};
         for (std::size_t c = 0; c < 3; ++c) wave.kept[c][ray] = part[c];

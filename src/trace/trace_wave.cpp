@@ -70,14 +70,14 @@ void WaveShader::find_shape_points(const TileTask& task, Wave& wave, const Insta
     scene_->kernels->shape_surfaces(job);
 }
 
-void WaveShader::trace(const TileTask& task, Wave& wave, bool coherent) {
+void WaveShader::trace(const TileTask& task, Wave& wave) {
     const bool looks = scene_->scene->has_undecided();
     for (std::uint32_t first = 0; first < wave.ray_count; first += kPacketWidth) {
         RayPacket<kPacketWidth>& packet = packet_.rays;
         scene_->kernels->pack(
             {wave.rays, scene_->scene->trace_from_camera(), first, wave.ray_count, nullptr, &packet_});
         sheer_.clear();
-        scene_->scene->nearest(packet_.valid, packet, coherent, false, looks ? &sheer_ : nullptr, true);
+        scene_->scene->nearest(packet_.valid, packet, true, false, looks ? &sheer_ : nullptr, true);
         for (std::uint32_t lane = 0; lane < kPacketWidth && first + lane < wave.ray_count; ++lane) {
             wave.instance[first + lane] = packet_.valid[lane] ? packet.instance[lane] : kNoHit;
             wave.triangle[first + lane] = packet.triangle[lane];

@@ -66,7 +66,7 @@ bool WaveShader::shade_samples(const TileTask& task, const SampleList& samples, 
         points += wave(last).ray_count;
         if (points > kMostPoints) return false;
         task.settings.checkpoint(0.0);
-        trace(task, wave(last), last == 1);
+        trace(task, wave(last));
         shade_points(task, wave(last), false);
     }
     for (; last > 0; --last) gather(wave(last), wave(last - 1));

@@ -58,7 +58,7 @@ class WaveShader final : public PointShader {
     void arrange_one(Wave& wave, std::uint32_t instance);
     void find_planes(const TileTask& task, const SampleList& samples);
     // trace_wave.cpp
-    void trace(const TileTask& task, Wave& wave, bool coherent);
+    void trace(const TileTask& task, Wave& wave);
     void find_shape_points(const TileTask& task, Wave& wave, const InstanceRun& run, const std::int32_t* x,
                            const std::int32_t* y) const;
     void see_sheer(Wave& wave, std::uint32_t first, const RayPacket<kPacketWidth>& packet);
