@@ -49,18 +49,26 @@ TraceWork primary_surfaces_work(const Place& place) {
     return point_work(place, &BenchWave::primary_surfaces, &TraceKernels::primary_surfaces, clear, output);
 }
 
-TraceWork ray_surfaces_work(const Place& place) {
-    const auto clear = [](WaveJob<RaySurfacesJob>& w) {
+// Points of rays anywhere.
+template <class Job>
+TraceWork hit_work(const Place& place, Job (BenchWave::*make)(), void (*TraceKernels::*kernel)(const Job&)) {
+    const auto clear = [](WaveJob<Job>& w) {
         std::fill_n(w.job.points[0], static_cast<std::size_t>(kPointNumbers) * w.job.points.stride, -1.0f);
         std::fill_n(w.job.distance, w.job.count, -1.0f);
     };
-    const auto output = [](const RaySurfacesJob& job) {
+    const auto output = [](const Job& job) {
         Bytes bytes = point_bytes(job.points, job.layout, job.count);
         append(bytes, job.points[kTimes], job.count);
         append(bytes, job.distance, job.count);
         return bytes;
     };
-    return point_work(place, &BenchWave::ray_surfaces, &TraceKernels::ray_surfaces, clear, output);
+    return point_work(place, make, kernel, clear, output);
+}
+TraceWork ray_surfaces_work(const Place& place) {
+    return hit_work(place, &BenchWave::ray_surfaces, &TraceKernels::ray_surfaces);
+}
+TraceWork shape_surfaces_work(const Place& place) {
+    return hit_work(place, &BenchWave::shape_surfaces, &TraceKernels::shape_surfaces);
 }
 
 TraceWork shade_work(const Place& place) {
@@ -88,6 +96,7 @@ std::vector<TraceCase> point_cases() {
         add("shade", place, shade_work);
     }
     for (const Place& place : {kSphere, kTerrain}) add("ray_surfaces", place, ray_surfaces_work);
+    add("shape_surfaces", kSphere, shape_surfaces_work);
     return cases;
 }
 

@@ -84,6 +84,35 @@ TraceWork pack_work(const Place& place, bool shadows) {
     return work;
 }
 
+TraceWork find_hits_work(const Place& place) {
+    const auto state = std::make_shared<PacketState>(place);
+    for (int n = 0; n < BenchWave::kPackets; ++n) {
+        WavePacket& packet = state->packets.all[static_cast<std::size_t>(n)];
+        trace_kernels(Isa::kScalar).primary_rays(state->wave.primary_rays(n, packet));
+        state->wave.scene().nearest(packet.valid, packet.rays, true, true, nullptr, true);
+    }
+    const auto found = std::make_shared<std::vector<PacketHits>>(state->packets.all.size());
+    TraceWork work{};
+    work.items = std::uint64_t{kRuns} * kPacketWidth * found->size();
+    work.clear = [=] { std::fill(found->begin(), found->end(), PacketHits{}); };
+    work.run = [=](const TracingKernels& kernels) {
+        return seconds_of_runs([&] {
+            for (std::size_t n = 0; n < found->size(); ++n) kernels.find_hits(state->packets.all[n], (*found)[n]);
+        });
+    };
+    work.output = [=] {
+        Bytes bytes;
+        for (const PacketHits& hits : *found) {
+            append(bytes, &hits.count, 1);
+            append(bytes, &hits.rays, 1);
+            append(bytes, hits.lane, hits.count);
+            append(bytes, hits.which, kPacketWidth);
+        }
+        return bytes;
+    };
+    return work;
+}
+
 TraceWork shadow_rays_work(const Place& place) {
     const auto state = std::make_shared<WaveJob<ShadowRaysJob>>(place, &BenchWave::shadow_rays);
     TraceWork work{};
@@ -140,6 +169,7 @@ std::vector<TraceCase> ray_cases() {
     for (const Place& place : {kSphere, kTerrain}) {
         const auto name = [&](const char* kernel) { return std::string(kernel) + "/" + place.workload; };
         cases.push_back({name("primary_rays"), [=] { return primary_rays_work(place); }});
+        cases.push_back({name("find_hits"), [=] { return find_hits_work(place); }});
         cases.push_back({name("shadow_rays"), [=] { return shadow_rays_work(place); }});
         cases.push_back({name("pack_shadow"), [=] { return pack_work(place, true); }});
         cases.push_back({name("spawn"), [=] { return spawn_work(place); }});

@@ -1,5 +1,8 @@
 #include "trace_kernel_wave.h"
 
+#include "geometry/matrix.h"
+#include "shading/shape_surface.h"
+
 #include <tessera/error.h>
 
 #include <algorithm>
@@ -243,6 +246,32 @@ RaySurfacesJob BenchWave::ray_surfaces() {
     job.instance_size = size_of(hit_instance_);
     job.points = mirrored_.points;
     job.distance = mirrored_.distance.data();
+    return job;
+}
+
+ShapeSurfacesJob BenchWave::shape_surfaces() {
+    const RaySurfacesJob rays = ray_surfaces();
+    sphere_ = *rays.instance;
+    sphere_.shape.kind = ShapeView::Kind::kSphere;
+    sphere_.shape.radius = 1;
+    invert_rows(sphere_.object_to_camera, sphere_.shape.camera_to_object);
+    names_.assign(rays.count, 0);
+    for (std::uint32_t i = 0; i < rays.count; i += 3) names_[i] = kLeavingSphere;
+    ShapeSurfacesJob job{};
+    job.instance = &sphere_;
+    job.material = rays.material;
+    job.layout = rays.layout;
+    job.projection = &frame_.frame.projection;
+    job.rays = rays.rays;
+    job.ray = rays.ray;
+    job.name = names_.data();
+    job.count = rays.count;
+    job.first = rays.first;
+    job.spread = rays.spread;
+    job.footprint_scale = rays.footprint_scale;
+    job.instance_size = rays.instance_size;
+    job.points = rays.points;
+    job.distance = rays.distance;
     return job;
 }
 

@@ -41,6 +41,9 @@ class BenchWave {
     TracedShadeJob shade();
     SpawnJob spawn();  // mirrored rays
     RaySurfacesJob ray_surfaces();
+    // The same rays on a sphere, wherever they go.
+    ShapeSurfacesJob shape_surfaces();
+    const EmbreeScene& scene() const { return scene_; }
 
     std::uint32_t samples() const { return static_cast<std::uint32_t>(list_.size() - kMaxLanes); }
     std::uint32_t triangles() const { return static_cast<std::uint32_t>(triangles_.size()); }
@@ -70,6 +73,8 @@ class BenchWave {
     const TileTask task_;
     const TraceKernels& kernels_;
     EmbreeScene scene_;
+    InstanceView sphere_{};
+    std::vector<std::uint32_t> names_;
     const int x0_, y0_;
 
     std::uint32_t instance_ = kNoHit, hit_instance_ = kNoHit;
