@@ -31,8 +31,8 @@ void WaveShader::find_planes(const TileTask& task, const SampleList& samples) {
     }
 }
 
-// All rays hit one instance: points in the order of the rays.
-void WaveShader::arrange_one(Wave& wave, std::uint32_t instance) {
+// All rays hit one instance: points in the order of the rays. `named`: the rays have their triangles.
+void WaveShader::arrange_one(Wave& wave, std::uint32_t instance, bool named) {
     const std::uint32_t count = wave.ray_count, padded = (count + kMaxLanes - 1) / kMaxLanes * kMaxLanes;
     wave.direct = true;
     wave.point_count = padded;
@@ -41,13 +41,12 @@ void WaveShader::arrange_one(Wave& wave, std::uint32_t instance) {
     wave.runs.assign(1, {instance, 0, count});
     std::uint32_t* const ray = wave.ray.data();
     for (std::uint32_t p = 0; p < count; ++p) ray[p] = p;
-    std::copy_n(wave.triangle.data(), count, wave.hit_triangle.data());
     std::fill_n(wave.used.data(), count, ~0u);
-    for (std::uint32_t p = count; p < padded; ++p) {
-        ray[p] = count - 1;
-        wave.hit_triangle[p] = wave.hit_triangle[count - 1];
-        wave.used[p] = 0;
-    }
+    std::fill_n(ray + count, padded - count, count - 1);
+    std::fill_n(wave.used.data() + count, padded - count, 0u);
+    if (!named) return;
+    std::copy_n(wave.triangle.data(), count, wave.hit_triangle.data());
+    std::fill_n(wave.hit_triangle.data() + count, padded - count, wave.triangle[count - 1]);
 }
 
 // A counting sort of the rays that hit something by instance; instances in the order of their batches.
@@ -72,7 +71,7 @@ void WaveShader::arrange(const TileTask& task, Wave& wave) {
     }
     if (instances_.size() == 1 && counts_[0] == wave.ray_count) {
         slot_of_instance_[instances_[0]] = kUnknown;
-        return arrange_one(wave, instances_[0]);
+        return arrange_one(wave, instances_[0], true);
     }
     wave.direct = false;
     wave.batches.clear();

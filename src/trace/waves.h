@@ -47,15 +47,18 @@ class WaveShader final : public PointShader {
                     float* const (&color)[4]);
     bool shade_samples(const TileTask& task, const SampleList& samples, std::uint32_t first, std::uint32_t count,
                        float* const (&color)[4]);
-    void take_samples(const TileTask& task, const SampleList& samples, std::uint32_t first, std::uint32_t count);
     void shade_points(const TileTask& task, Wave& wave, bool camera);
     bool send_on(const TileTask& task, Wave& from, Wave& to, int depth);
     void count_ended(SpawnJob job, const std::uint32_t* used, std::initializer_list<SpawnJob::Kind> kinds);
     void gather(const Wave& from, Wave& to) const;
     void write(std::uint32_t first, float* const (&color)[4]) const;
+    // first_wave.cpp
+    void take_samples(const TileTask& task, const SampleList& samples, std::uint32_t first, std::uint32_t count);
+    void find_picture_points(const TileTask& task, const SampleList& samples, const std::int32_t* x,
+                             const std::int32_t* y, const std::uint32_t* ordinal);
     // arrange.cpp
     void arrange(const TileTask& task, Wave& wave);
-    void arrange_one(Wave& wave, std::uint32_t instance);
+    void arrange_one(Wave& wave, std::uint32_t instance, bool named);
     void find_planes(const TileTask& task, const SampleList& samples);
     // trace_wave.cpp
     void trace(const TileTask& task, Wave& wave);
