@@ -254,10 +254,14 @@ Vec3T<float> LightTracerReference::arriving(const Point& point, const LightSampl
     });
     if (blocked) return none;
     std::sort(sheer.begin(), sheer.end());
-    for (const std::uint32_t triangle : sheer)
-        left =
-            left * straight_through(context_.materials[material_of(triangle)], surface_at(triangle, ray, 0.0f).point);
-    return left;
+    StraightAbsorption taken;
+    for (const std::uint32_t triangle : sheer) {
+        const MaterialView& material = context_.materials[material_of(triangle)];
+        const RaySurface<float> hit = surface_at(triangle, ray, 0.0f);
+        left = left * straight_through(material, hit.point);
+        if (absorbs(material)) taken.cross(material, hit.point.side < 0.0f, hit.distance);
+    }
+    return left * taken.left(light.distance * kNearly);
 }
 
 }  // namespace tessera

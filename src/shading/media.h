@@ -2,8 +2,11 @@
 // that was entered last (Schmidt and Budge 2002, "Simple nested dielectrics in ray traced images").
 #pragma once
 
-#include "shading/material.h"
+#include "shading/traced_shade.h"
+#include "shading/vectors.h"
+#include "simd/math.h"
 
+#include <algorithm>
 #include <cstdint>
 
 namespace tessera {
@@ -68,5 +71,33 @@ inline Boundary boundary(const Media& media, std::uint32_t m, bool entering, int
     }
     return b;
 }
+
+// Whether the material is that of a body that takes light on its way through.
+inline bool absorbs(const MaterialView& m) {
+    return may_transmit(m) && !m.thin && (m.absorption[0] > 0 || m.absorption[1] > 0 || m.absorption[2] > 0);
+}
+
+// What bodies take of light on a straight way to its lamp: a sum over their surfaces there. Bodies within bodies count
+// as if both filled the space.
+class StraightAbsorption {
+  public:
+    void cross(const MaterialView& m, bool leaving, float distance) {
+        const Vec3T<float> a = Vec3T<float>::load(m.absorption) * (leaving ? 1.0f : -1.0f);
+        depth_ = depth_ + a * distance;
+        open_ = open_ - a;
+    }
+    // `length` of the whole way: a lamp may stand within a body.
+    Vec3T<float> left(float length) const {
+        constexpr float kWithoutEnd = 1e30f;
+        const auto part = [&](float depth, float open) {
+            const float rest = length < kWithoutEnd ? std::max(open, 0.0f) * length : 0.0f;
+            return math::exp(-std::max(depth + rest, 0.0f));
+        };
+        return {part(depth_.x, open_.x), part(depth_.y, open_.y), part(depth_.z, open_.z)};
+    }
+
+  private:
+    Vec3T<float> depth_{0, 0, 0}, open_{0, 0, 0};  // optical depth; absorption by bodies that were not left
+};
 
 }  // namespace tessera

@@ -67,6 +67,8 @@ void WaveShader::attenuate(RayPacket<kPacketWidth>& packet, const int* valid, st
                            const Wave& wave) {
     alignas(64) int free[kPacketWidth];
     float left[kPacketWidth][3];
+    StraightAbsorption taken[kPacketWidth];
+    bool takes[kPacketWidth] = {};
     for (std::uint32_t lane = 0; lane < kPacketWidth; ++lane) {
         free[lane] = valid[lane] && !(packet.t_far[lane] < 0.0f) ? -1 : 0;
         for (float& channel : left[lane]) channel = free[lane] ? 1.0f : 0.0f;
@@ -75,17 +77,28 @@ void WaveShader::attenuate(RayPacket<kPacketWidth>& packet, const int* valid, st
     sort_by_triangle(sheer_);
     for (const SheerHit& hit : sheer_) {
         if (!free[hit.lane]) continue;
-        if (const auto& even = scene_->even_transmittance[hit.instance]) {
-            left[hit.lane][0] *= even->x, left[hit.lane][1] *= even->y, left[hit.lane][2] *= even->z;
-            continue;
-        }
+        const MaterialView& material = sheer_surface_->material(hit.instance);
+        const auto& even = scene_->even_transmittance[hit.instance];
+        const auto take = [&left = left[hit.lane]](const Vec3T<float>& part) {
+            left[0] *= part.x, left[1] *= part.y, left[2] *= part.z;
+        };
+        if (even) take(*even);
+        if (even && !absorbs(material)) continue;
         const std::uint32_t ray = first + hit.lane;
         const WaveArrays& r = shadow_rays_;
         const ConeRay<float> cone{{r[kOriginX][ray], r[kOriginY][ray], r[kOriginZ][ray]},
                                   {r[kDirectionX][ray], r[kDirectionY][ray], r[kDirectionZ][ray]},
                                   wave.points[kFootprint][shadow_point_[ray]]};
-        const Vec3T<float> part = sheer_surface_->transmitted(hit.instance, hit.triangle, cone, 0.0f);
-        left[hit.lane][0] *= part.x, left[hit.lane][1] *= part.y, left[hit.lane][2] *= part.z;
+        const RaySurface<float> surface = sheer_surface_->hit(hit.instance, hit.triangle, cone, 0.0f);
+        if (!even) take(straight_through(material, surface.point));
+        if (!absorbs(material)) continue;
+        taken[hit.lane].cross(material, surface.point.side < 0.0f, surface.distance);
+        takes[hit.lane] = true;
+    }
+    for (std::uint32_t lane = 0; lane < kPacketWidth; ++lane) {
+        if (!takes[lane]) continue;
+        const Vec3T<float> part = taken[lane].left(shadow_far_[first + lane]);
+        left[lane][0] *= part.x, left[lane][1] *= part.y, left[lane][2] *= part.z;
     }
     for (std::uint32_t lane = 0; lane < kPacketWidth; ++lane)
         for (std::size_t c = 0; valid[lane] && c < 3; ++c)

@@ -50,25 +50,20 @@ float SheerSurface::alpha(SamplePosition at) {
     return base_color(material(instance_), surface_point(layout_, rays_, sample, x, y, context_.footprint_scale)).w;
 }
 
-SurfacePoint<float> SheerSurface::hit(std::uint32_t instance, std::uint32_t triangle, const ConeRay<float>& ray,
-                                      float spread) const {
+RaySurface<float> SheerSurface::hit(std::uint32_t instance, std::uint32_t triangle, const ConeRay<float>& ray,
+                                    float spread) const {
     const InstanceView& view = frame_.instances[instance];
     if (view.shape)
-        return shape_surface<float>(view, ray, triangle == kLeavingSphere, spread, context_.footprint_scale).point;
+        return shape_surface<float>(view, ray, triangle == kLeavingSphere, spread, context_.footprint_scale);
     Corner<float> corners[3];
     for (std::size_t i = 0; i < 3; ++i)
         corners[i] = fetch_corner(view.mesh, view.mesh.triangles[3 * std::size_t{triangle} + i]);
-    return ray_surface(view, corners, ray, spread, context_.footprint_scale).point;
+    return ray_surface(view, corners, ray, spread, context_.footprint_scale);
 }
 
 float SheerSurface::alpha(std::uint32_t instance, std::uint32_t triangle, const ConeRay<float>& ray,
                           float spread) const {
-    return base_color(material(instance), hit(instance, triangle, ray, spread)).w;
-}
-
-Vec3T<float> SheerSurface::transmitted(std::uint32_t instance, std::uint32_t triangle, const ConeRay<float>& ray,
-                                       float spread) const {
-    return straight_through(material(instance), hit(instance, triangle, ray, spread));
+    return base_color(material(instance), hit(instance, triangle, ray, spread).point).w;
 }
 
 }  // namespace tessera

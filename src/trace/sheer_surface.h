@@ -23,9 +23,9 @@ class SheerSurface {
     // Alpha where a ray hits the triangle, whoever sees it; `width` of the ray's footprint grows by `spread`.
     float alpha(std::uint32_t instance, std::uint32_t triangle, const ConeRay<float>& ray, float spread) const;
 
-    // What a triangle lets through of light that comes straight along the ray.
-    Vec3T<float> transmitted(std::uint32_t instance, std::uint32_t triangle, const ConeRay<float>& ray,
-                             float spread) const;
+    // Where a ray hits the triangle.
+    RaySurface<float> hit(std::uint32_t instance, std::uint32_t triangle, const ConeRay<float>& ray,
+                          float spread) const;
 
     const MaterialView& material(std::uint32_t instance) const {
         return context_.materials[frame_.instances[instance].material];
@@ -33,8 +33,6 @@ class SheerSurface {
 
   private:
     RaySurface<float> shape_point(SamplePosition at) const;
-    SurfacePoint<float> hit(std::uint32_t instance, std::uint32_t triangle, const ConeRay<float>& ray,
-                            float spread) const;
 
     const Frame& frame_;
     const ShadingContext& context_;

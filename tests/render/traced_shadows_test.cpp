@@ -221,6 +221,36 @@ TEST(TracedShadows, GlassTintsLight) {
     }
 }
 
+TEST(TracedShadows, BodiesTakeLightOnItsWayThroughThem) {
+    // Half a metre of glass, above the wall or with the lamp inside.
+    constexpr float kThickness = 0.5f, kDistance = 0.4f;
+    const Vec3 color{0.9f, 0.5f, 0.2f};
+    Material m = glass(1.5f);
+    m.volume.attenuation_color = color;
+    m.volume.attenuation_distance = kDistance;
+    for (const Engine engine : kTracers)
+        for (const bool within : {false, true}) {
+            Scene scene;
+            place(scene, rectangle(4, 4, 0, add_material(scene, lambert({1, 1, 1}))), {});
+            place(scene, box({1, 1, 0.5f * kThickness}, add_material(scene, m)), {0.3f, 0.1f, 2});
+            Light lamp;
+            lamp.intensity = 10;
+            add_light(scene, lamp, {0, 0, within ? 2 : 3.0f});
+            RenderOptions o = traced(engine, 33, 33);
+            o.view = look({3, 0, 1}, {0, 0, 0});  // from below the glass
+            const Vec4 shadowed = linear_at(render(scene, o), 16, 16);
+            o.shadows = Shadows::kNone;
+            const Vec4 open = linear_at(render(scene, o), 16, 16);
+            const float got[] = {shadowed.x / open.x, shadowed.y / open.y, shadowed.z / open.z},
+                        want[] = {color.x, color.y, color.z};
+            for (std::size_t c = 0; c < 3; ++c) {
+                const double faces = within ? 0.96 : 0.96 * 0.96, way = within ? 0.5 * kThickness : kThickness;
+                EXPECT_NEAR(got[c], faces * std::pow(static_cast<double>(want[c]), way / kDistance), 2e-3)
+                    << name(engine) << ", within " << within << ": " << got[c];
+            }
+        }
+}
+
 TEST(TracedShadows, CutOutsThrowTheirShape) {
     Image halves(2, 1, PixelFormat::kRgba8);
     std::uint8_t* t = halves.data<std::uint8_t>();
