@@ -6,7 +6,6 @@
 #include "shading/vectors.h"
 #include "simd/math.h"
 
-#include <algorithm>
 #include <cstdint>
 
 namespace tessera {
@@ -90,8 +89,8 @@ class StraightAbsorption {
     Vec3T<float> left(float length) const {
         constexpr float kWithoutEnd = 1e30f;
         const auto part = [&](float depth, float open) {
-            const float rest = length < kWithoutEnd ? std::max(open, 0.0f) * length : 0.0f;
-            return math::exp(-std::max(depth + rest, 0.0f));
+            const float rest = length < kWithoutEnd ? max(open, 0.0f) * length : 0.0f;
+            return math::exp(-max(depth + rest, 0.0f));
         };
         return {part(depth_.x, open_.x), part(depth_.y, open_.y), part(depth_.z, open_.z)};
     }
