@@ -89,10 +89,10 @@ void WaveShader::attenuate(RayPacket<kPacketWidth>& packet, const int* valid, st
         const ConeRay<float> cone{{r[kOriginX][ray], r[kOriginY][ray], r[kOriginZ][ray]},
                                   {r[kDirectionX][ray], r[kDirectionY][ray], r[kDirectionZ][ray]},
                                   wave.points[kFootprint][shadow_point_[ray]]};
-        const RaySurface<float> surface = sheer_surface_->hit(hit.instance, hit.triangle, cone, 0.0f);
-        if (!even) take(straight_through(material, surface.point));
+        if (!even) take(straight_through(material, sheer_surface_->hit(hit.instance, hit.triangle, cone, 0.0f).point));
         if (!absorbs(material)) continue;
-        taken[hit.lane].cross(material, surface.point.side < 0.0f, surface.distance);
+        const SheerSurface::Crossing at = sheer_surface_->crossing(hit.instance, hit.triangle, cone);
+        taken[hit.lane].cross(material, at.leaving, at.distance);
         takes[hit.lane] = true;
     }
     for (std::uint32_t lane = 0; lane < kPacketWidth; ++lane) {

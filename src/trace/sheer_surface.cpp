@@ -66,4 +66,21 @@ float SheerSurface::alpha(std::uint32_t instance, std::uint32_t triangle, const 
     return base_color(material(instance), hit(instance, triangle, ray, spread).point).w;
 }
 
+SheerSurface::Crossing SheerSurface::crossing(std::uint32_t instance, std::uint32_t triangle,
+                                              const ConeRay<float>& ray) const {
+    const InstanceView& view = frame_.instances[instance];
+    if (view.shape) {
+        const RaySurface<float> at = hit(instance, triangle, ray, 0.0f);
+        return {at.distance, at.point.side < 0.0f};
+    }
+    const std::uint32_t* const corners = view.mesh.triangles + 3 * std::size_t{triangle};
+    Vec3T<float> p[3], v[3];
+    for (std::size_t i = 0; i < 3; ++i) {
+        p[i] = Vec3T<float>::load(view.mesh.positions + 3 * std::size_t{corners[i]});
+        v[i] = transform_point(view.object_to_camera, p[i]);
+    }
+    const Vec3T<float> ng = geometric_normal(view, p[0], p[1], p[2]);
+    return {ray_point(ray, v, ng, 0.0f).distance, dot(ng, ray.direction) > 0.0f};
+}
+
 }  // namespace tessera

@@ -27,6 +27,13 @@ class SheerSurface {
     RaySurface<float> hit(std::uint32_t instance, std::uint32_t triangle, const ConeRay<float>& ray,
                           float spread) const;
 
+    // Of such a hit how far the ray came, and whether it left the body: hit()'s distance and side, without the rest.
+    struct Crossing {
+        float distance;
+        bool leaving;
+    };
+    Crossing crossing(std::uint32_t instance, std::uint32_t triangle, const ConeRay<float>& ray) const;
+
     const MaterialView& material(std::uint32_t instance) const {
         return context_.materials[frame_.instances[instance].material];
     }
