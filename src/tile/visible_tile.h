@@ -44,7 +44,7 @@ struct TileFragment {
     float depth;
 };
 
-// Ordinals count the tile's triangles from 1; 0 is nothing. Those of one instance should follow each other.
+// Ordinals count the tile's triangles from 1; 0 is nothing. Those of one instance follow each other.
 struct VisibleTile {
     PixelArray<float> depth;                // canonical, of the nearest opaque surface
     PixelArray<std::uint32_t> ordinal;      // of that

@@ -89,9 +89,8 @@ inline void expect_the_references_picture(const std::string& name, const Scene& 
     }
 }
 
-// Mirrors, glass in water, tinted panes, blended and cut-out plates, metal, lamps of three kinds.
-inline Scene many_kinds() {
-    Scene scene;
+// A texture of dots with holes.
+inline void add_dots(Scene& scene) {
     Image dots(8, 8, PixelFormat::kRgba8);
     for (int i = 0; i < 64; ++i) {
         std::uint8_t* t = dots.data<std::uint8_t>() + 4 * i;
@@ -99,33 +98,43 @@ inline Scene many_kinds() {
     }
     scene.pictures.push_back({"dots", "", std::make_shared<const Image>(dots), ""});
     scene.textures.push_back({"", 0, kNone, ""});
+}
+
+struct Kinds {
+    Material mirror, water, flint, metal, veil, leaf;  // leaf: cut out of the dots
+};
+inline Kinds kinds() {
+    Kinds k;
+    k.mirror = lambert({0.1f, 0.1f, 0.1f});
+    k.mirror.mirror = {0.8f, 0.9f, 0.7f};
+    k.water = glass(1.33f, {0.8f, 0.9f, 1});
+    k.water.volume.attenuation_distance = 0.5f;
+    k.water.volume.attenuation_color = {0.4f, 0.7f, 0.9f};
+    k.flint = glass(1.6f);
+    k.flint.volume.priority = 1;
+    k.flint.dispersion = 0.5f;
+    k.metal.base_color = {0.9f, 0.7f, 0.3f, 1};
+    k.metal.roughness = 0.1f;
+    k.veil.base_color = {0.2f, 0.8f, 0.4f, 0.4f};
+    k.leaf.texture(TextureSlot::kBaseColor).texture = 0;
+    k.veil.alpha_mode = AlphaMode::kBlend;
+    k.leaf.alpha_mode = AlphaMode::kMask;
+    for (Material* m : {&k.veil, &k.leaf}) m->metallic = 0, m->double_sided = true;
+    return k;
+}
+
+// Mirrors, glass in water, tinted panes, blended and cut-out plates, metal, lamps of three kinds.
+inline Scene many_kinds() {
+    Scene scene;
+    add_dots(scene);
+    const auto [mirror, water, flint, metal, veil, leaf] = kinds();
     const int floor = add_material(scene, lambert({0.7f, 0.6f, 0.5f}));
     place(scene, rectangle(4, 4, 0, floor), {0, -1, 0}, toward({0, -1, 0}));
-    Material mirror = lambert({0.1f, 0.1f, 0.1f});
-    mirror.mirror = {0.8f, 0.9f, 0.7f};
     place(scene, rectangle(2, 2, 0, add_material(scene, mirror)), {0, 0, -2});
-    Material water = glass(1.33f, {0.8f, 0.9f, 1});
-    water.volume.attenuation_distance = 0.5f;
-    water.volume.attenuation_color = {0.4f, 0.7f, 0.9f};
-    Material flint = glass(1.6f);
-    flint.volume.priority = 1;
-    flint.dispersion = 0.5f;
     place(scene, sphere(24, add_material(scene, water)), {-0.9f, 0, 0}, {}, {-0.8f, 0.8f, 0.7f});
     place(scene, sphere(24, add_material(scene, flint)), {-0.5f, 0.2f, 0.3f}, {}, {0.5f, 0.5f, 0.5f});
-    Material metal;
-    metal.base_color = {0.9f, 0.7f, 0.3f, 1};
-    metal.roughness = 0.1f;
     place(scene, sphere(24, add_material(scene, metal)), {0.9f, -0.4f, 0}, {0.1f, 0.2f, 0.3f, 0.927f},
           {0.6f, -0.4f, 0.5f});
-    Material veil, leaf;
-    veil.base_color = {0.2f, 0.8f, 0.4f, 0.4f};
-    veil.metallic = 0;
-    veil.alpha_mode = AlphaMode::kBlend;
-    veil.double_sided = true;
-    leaf.texture(TextureSlot::kBaseColor).texture = 0;
-    leaf.metallic = 0;
-    leaf.alpha_mode = AlphaMode::kMask;
-    leaf.double_sided = true;
     place(scene, rectangle(0.5f, 0.5f, 0, add_material(scene, veil)), {0.7f, 0.3f, 1}, {0, 0.2f, 0, 0.98f});
     place(scene, rectangle(0.5f, 0.5f, 0, add_material(scene, leaf)), {0.2f, 0.8f, 0.5f}, {0.2f, 0.1f, 0, 0.97f});
     place(scene, rectangle(0.4f, 0.4f, 0, add_material(scene, pane({1, 0.6f, 0.6f}))), {0.3f, -0.4f, 1.2f});

@@ -16,16 +16,6 @@ using namespace test;
 Shape sphere_of(float radius, int segments) { return {Shape::Type::kSphere, radius, {0, 0}, segments}; }
 Shape disc_of(float radius, int segments) { return {Shape::Type::kDisc, radius, {0, 0}, segments}; }
 
-void add_dots(Scene& scene) {
-    Image dots(8, 8, PixelFormat::kRgba8);
-    for (int i = 0; i < 64; ++i) {
-        std::uint8_t* t = dots.data<std::uint8_t>() + 4 * i;
-        t[0] = 200, t[1] = 120, t[2] = static_cast<std::uint8_t>(4 * i), t[3] = (i + i / 8) % 3 ? 255 : 0;
-    }
-    scene.pictures.push_back({"dots", "", std::make_shared<const Image>(dots), ""});
-    scene.textures.push_back({"", 0, kNone, ""});
-}
-
 // Mirrors, glass within glass, cut-outs and veils, on an endless floor; evenly scaled, stretched and mirrored.
 Scene shapes_of_many_kinds(int segments = 24) {
     Scene scene;
@@ -33,23 +23,7 @@ Scene shapes_of_many_kinds(int segments = 24) {
     const auto put = [&](const Shape& shape, const Material& m, Vec3 at, Quat turn = {}, Vec3 scale = {1, 1, 1}) {
         place(scene, shape_primitive(shape, add_material(scene, m)), at, turn, scale);
     };
-    Material mirror = lambert({0.1f, 0.1f, 0.1f});
-    mirror.mirror = {0.8f, 0.9f, 0.7f};
-    Material water = glass(1.33f, {0.8f, 0.9f, 1}), flint = glass(1.6f), metal, veil, leaf;
-    water.volume.attenuation_distance = 0.5f;
-    water.volume.attenuation_color = {0.4f, 0.7f, 0.9f};
-    flint.volume.priority = 1;
-    flint.dispersion = 0.5f;
-    metal.base_color = {0.9f, 0.7f, 0.3f, 1};
-    metal.roughness = 0.1f;
-    veil.base_color = {0.2f, 0.8f, 0.4f, 0.4f};
-    veil.metallic = 0;
-    veil.alpha_mode = AlphaMode::kBlend;
-    veil.double_sided = true;
-    leaf.texture(TextureSlot::kBaseColor).texture = 0;
-    leaf.metallic = 0;
-    leaf.alpha_mode = AlphaMode::kMask;
-    leaf.double_sided = true;
+    const auto [mirror, water, flint, metal, veil, leaf] = kinds();
     Material thin_veil = veil, one_sided_leaf = leaf;
     thin_veil.base_color.w = 0.7f;
     thin_veil.double_sided = false;

@@ -138,17 +138,7 @@ TEST_P(EmbreeScenes, ShadowsAreTheReferences) {
         const Truth truth(f);
         std::vector<Ray> rays = random_rays(random, 3000);
         for (Ray& ray : rays) ray.t_far = 1;
-        std::vector<int> want;
-        for (const Ray& ray : rays) want.push_back(!truth.along(ray).empty());
-        for (const bool coherent : {false, true}) {
-            for (const std::vector<int>& got :
-                 {occluded<1>(scene, rays, coherent), occluded<4>(scene, rays, coherent),
-                  occluded<8>(scene, rays, coherent), occluded<16>(scene, rays, coherent)}) {
-                int differ = 0;
-                for (std::size_t r = 0; r < rays.size(); ++r) differ += got[r] != want[r];
-                EXPECT_LE(differ, 3);
-            }
-        }
+        expect_occluded(scene, truth, rays, 3);
     }
 }
 

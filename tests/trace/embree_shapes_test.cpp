@@ -129,16 +129,7 @@ TEST_P(EmbreeShapes, ShadowsAreTheReferences) {
             const Truth truth(f);
             std::vector<Ray> rays = random_rays(random, 1500);
             for (Ray& ray : rays) ray.t_far = random.in(0.5f, 1.5f);  // ends within some of them
-            std::vector<int> want;
-            for (const Ray& ray : rays) want.push_back(!truth.along(ray).empty());
-            for (const bool coherent : {false, true})
-                for (const std::vector<int>& got :
-                     {occluded<1>(scene, rays, coherent), occluded<4>(scene, rays, coherent),
-                      occluded<8>(scene, rays, coherent), occluded<16>(scene, rays, coherent)}) {
-                    int differ = 0;
-                    for (std::size_t r = 0; r < rays.size(); ++r) differ += got[r] != want[r];
-                    EXPECT_LE(differ, 2);
-                }
+            expect_occluded(scene, truth, rays, 2);
         }
 }
 
@@ -240,8 +231,6 @@ TEST_P(EmbreeShapes, TheLowestOfCoincidentShapesIsHit) {
     }
 }
 
-using Found = std::set<std::tuple<std::uint32_t, std::uint32_t, std::uint32_t>>;
-
 // Both roots of a sheer sphere, unless its back is culled, in front of the nearest solid surface.
 TEST_P(EmbreeShapes, SheerShapesAreFoundCompletely) {
     std::size_t all_before = 0;
@@ -277,8 +266,7 @@ TEST_P(EmbreeShapes, SheerShapesAreFoundCompletely) {
                     std::vector<SheerHit> sheer;
                     const std::vector<Hit> hits = nearest<W>(scene, rays, {coherent, from_camera, &sheer});
                     EXPECT_EQ(compare(truth, rays, hits, from_camera).wrong, 0);
-                    Found got;
-                    for (const SheerHit& s : sheer) got.insert({s.lane, s.instance, s.triangle});
+                    const Found got = found(sheer);
                     std::size_t missing = 0, wrong = 0;
                     for (const auto& s : before) missing += !got.count(s);
                     for (const auto& [r, i, t] : got)
@@ -298,20 +286,7 @@ TEST_P(EmbreeShapes, SheerShapesAreFoundCompletely) {
                 check(std::integral_constant<int, 16>{}, false);
                 check(std::integral_constant<int, 16>{}, true);
             }
-            // And all along the ray, from both sides.
-            Found all;
-            for (std::uint32_t r = 0; r < rays.size(); ++r)
-                for (const auto& m : truth.along(rays[r]))
-                    if (truth.sheer(m.instance)) all.insert({r, m.instance, m.triangle});
-            for (const std::vector<SheerHit>& sheer : {find_sheer<1>(scene, rays), find_sheer<4>(scene, rays),
-                                                       find_sheer<8>(scene, rays), find_sheer<16>(scene, rays)}) {
-                Found got;
-                for (const SheerHit& s : sheer) got.insert({s.lane, s.instance, s.triangle});
-                std::size_t differ = 0;
-                for (const auto& [r, i, t] : all) differ += !got.count({r, i, t}) && !truth.doubtful(rays[r], i, t);
-                for (const auto& [r, i, t] : got) differ += !all.count({r, i, t}) && !truth.doubtful(rays[r], i, t);
-                EXPECT_EQ(differ, 0u) << "of " << all.size();
-            }
+            expect_all_sheer(scene, truth, rays);
         }
     EXPECT_GT(all_before, 2000u);
     EXPECT_GT(both, 100);

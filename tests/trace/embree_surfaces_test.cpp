@@ -160,14 +160,6 @@ TEST_P(EmbreeSurfaces, WallsOfTwoFacesShowTheRightOne) {
     EXPECT_EQ(scene_->statistics().duplicates, 0u);
 }
 
-using Found = std::set<std::tuple<std::uint32_t, std::uint32_t, std::uint32_t>>;
-
-Found found(const std::vector<SheerHit>& sheer) {
-    Found all;
-    for (const SheerHit& s : sheer) all.insert({s.lane, s.instance, s.triangle});
-    return all;
-}
-
 // Everything sheer in front of the nearest solid surface, against all that the reference finds along a ray.
 TEST_P(EmbreeSurfaces, SheerSurfacesAreFoundCompletely) {
     for (const bool several : {false, true}) {
@@ -229,18 +221,7 @@ TEST_P(EmbreeSurfaces, SheerSurfacesAreFoundCompletely) {
             check(std::integral_constant<int, 16>{}, false);
             check(std::integral_constant<int, 16>{}, true);
         }
-        // And all along the ray, from both sides.
-        Found all;
-        for (std::uint32_t r = 0; r < rays.size(); ++r)
-            for (const auto& m : truth.along(rays[r]))
-                if (truth.sheer(m.instance)) all.insert({r, m.instance, m.triangle});
-        for (const Found& got : {found(find_sheer<1>(scene, rays)), found(find_sheer<4>(scene, rays)),
-                                 found(find_sheer<8>(scene, rays)), found(find_sheer<16>(scene, rays))}) {
-            std::size_t differ = 0;
-            for (const auto& [r, i, t] : all) differ += !got.count({r, i, t}) && !truth.doubtful(rays[r], i, t);
-            for (const auto& [r, i, t] : got) differ += !all.count({r, i, t}) && !truth.doubtful(rays[r], i, t);
-            EXPECT_EQ(differ, 0u) << "of " << all.size();
-        }
+        expect_all_sheer(scene, truth, rays);
         // Sheer surfaces stop no light.
         std::vector<int> want;
         for (const Ray& ray : rays) {

@@ -15,6 +15,7 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <set>
 #include <tuple>
 #include <utility>
 #include <vector>
@@ -372,6 +373,42 @@ inline void expect_agreement(const Agreement& a, double most_different = 1e-3) {
     EXPECT_LE(a.differ, most_different * a.rays) << "of " << a.rays;
     EXPECT_GT(a.hit, a.rays / 10);
     testing::Test::RecordProperty("differ", a.differ);
+}
+
+// By ray, instance and triangle.
+using Found = std::set<std::tuple<std::uint32_t, std::uint32_t, std::uint32_t>>;
+inline Found found(const std::vector<SheerHit>& sheer) {
+    Found all;
+    for (const SheerHit& s : sheer) all.insert({s.lane, s.instance, s.triangle});
+    return all;
+}
+
+// All sheer surfaces along the rays, from both sides, in packets of every width.
+inline void expect_all_sheer(const EmbreeScene& scene, const Truth& truth, const std::vector<Ray>& rays) {
+    Found all;
+    for (std::uint32_t r = 0; r < rays.size(); ++r)
+        for (const auto& m : truth.along(rays[r]))
+            if (truth.sheer(m.instance)) all.insert({r, m.instance, m.triangle});
+    for (const Found& got : {found(find_sheer<1>(scene, rays)), found(find_sheer<4>(scene, rays)),
+                             found(find_sheer<8>(scene, rays)), found(find_sheer<16>(scene, rays))}) {
+        std::size_t differ = 0;
+        for (const auto& [r, i, t] : all) differ += !got.count({r, i, t}) && !truth.doubtful(rays[r], i, t);
+        for (const auto& [r, i, t] : got) differ += !all.count({r, i, t}) && !truth.doubtful(rays[r], i, t);
+        EXPECT_EQ(differ, 0u) << "of " << all.size();
+    }
+}
+
+// Whether anything is along the rays, in packets of every kind; at most so many at an edge may fall either way.
+inline void expect_occluded(const EmbreeScene& scene, const Truth& truth, const std::vector<Ray>& rays, int most) {
+    std::vector<int> want;
+    for (const Ray& ray : rays) want.push_back(!truth.along(ray).empty());
+    for (const bool coherent : {false, true})
+        for (const std::vector<int>& got : {occluded<1>(scene, rays, coherent), occluded<4>(scene, rays, coherent),
+                                            occluded<8>(scene, rays, coherent), occluded<16>(scene, rays, coherent)}) {
+            int differ = 0;
+            for (std::size_t r = 0; r < rays.size(); ++r) differ += got[r] != want[r];
+            EXPECT_LE(differ, most);
+        }
 }
 
 }  // namespace tessera::test
